@@ -8,6 +8,31 @@
 #include <ritz/assembly.h>
 #include <ritz/scene.h>
 
+/* The request for a basis of a body of a scene, with what it needs. */
+typedef struct ritz_body_request {
+    ritz_request asked;
+    ritz_dofs attached;       /* asked.attached */
+    ritz_neighbour neighbour; /* *asked.neighbour, if the method uses it */
+} ritz_body_request;
+
+/**
+ * The request that ritz_stage_reduce makes for component @p k of a scene. It
+ * must not be copied.
+ *
+ * @param[in] item, component  borrowed until free
+ * @return RITZ_ERR_ARGUMENT if there is no such method or port
+ */
+ritz_status ritz_body_request_new(const ritz_scene *scene, int64_t k,
+                                  const ritz_scene_component *item,
+                                  const ritz_component *component,
+                                  ritz_body_request *out);
+void ritz_body_request_free(ritz_body_request *request);
+
+/** Whether the same ports of components @p j and @p k of a scene are attached
+ * where @p item of each names none. */
+ritz_status ritz_stage_same_ports(const ritz_scene *scene, int64_t j, int64_t k,
+                                  bool *same);
+
 /* The relations of a joint between the motions of two ports. */
 
 /* One end of a joint; the port's map is not used. */

@@ -77,35 +77,66 @@ static ritz_status list_used_ports(const ritz_scene *scene, int64_t k,
     return RITZ_OK;
 }
 
+ritz_status ritz_stage_same_ports(const ritz_scene *scene, int64_t j, int64_t k,
+                                  bool *same)
+{
+    const char *given[] = {scene->component[j].attach,
+                           scene->component[k].attach};
+    RITZ_OWN_ARRAY char *first = NULL, *second = NULL;
+
+    RITZ_CHECK(list_used_ports(scene, j, &first));
+    RITZ_CHECK(list_used_ports(scene, k, &second));
+    *same =
+        strcmp(given[0] ? given[0] : first, given[1] ? given[1] : second) == 0;
+    return RITZ_OK;
+}
+
+ritz_status ritz_body_request_new(const ritz_scene *scene, int64_t k,
+                                  const ritz_scene_component *item,
+                                  const ritz_component *component,
+                                  ritz_body_request *out)
+{
+    const ritz_method *method = ritz_method_find(item->basis);
+    RITZ_OWN_ARRAY char *ports = NULL;
+    ritz_request *request = &out->asked;
+
+    if (!method)
+        return RITZ_ERR_ARGUMENT;
+    *request = (ritz_request)RITZ_REQUEST_NONE;
+    request->component = component;
+    request->modes = item->modes;
+    request->up_to_hz = item->up_to_hz;
+    request->choice = item->choice;
+    if (!item->attach)
+        RITZ_CHECK(list_used_ports(scene, k, &ports));
+    RITZ_CHECK(ritz_component_attached(
+        component, item->attach ? item->attach : ports, &out->attached));
+    request->attached = out->attached;
+    if (method->uses & RITZ_USES_NEIGHBOUR) {
+        RITZ_CHECK(ritz_scene_neighbour(scene, k, component, &out->attached,
+                                        &out->neighbour));
+        request->neighbour = &out->neighbour;
+    }
+    return RITZ_OK;
+}
+
+void ritz_body_request_free(ritz_body_request *request)
+{
+    ritz_dofs_free(&request->attached);
+    ritz_neighbour_free(&request->neighbour);
+}
+
 ritz_status ritz_stage_reduce(const ritz_scene *scene, int64_t k,
                               const ritz_scene_component *item,
                               const ritz_component *component,
                               ritz_reduced *out)
 {
-    const ritz_method *method = ritz_method_find(item->basis);
-    ritz_request request = RITZ_REQUEST_NONE;
-    RITZ_OWN(ritz_dofs) attached = {0};
-    RITZ_OWN(ritz_neighbour) neighbour = {0};
+    RITZ_OWN(ritz_body_request) own = {0};
     RITZ_OWN(ritz_basis) basis = {0};
-    RITZ_OWN_ARRAY char *ports = NULL;
 
-    if (!method)
-        return RITZ_ERR_ARGUMENT;
-    request.component = component;
-    request.modes = item->modes;
-    request.up_to_hz = item->up_to_hz;
-    request.choice = item->choice;
-    if (!item->attach)
-        RITZ_CHECK(list_used_ports(scene, k, &ports));
-    RITZ_CHECK(ritz_component_attached(
-        component, item->attach ? item->attach : ports, &attached));
-    request.attached = attached; /* borrowed */
-    if (method->uses & RITZ_USES_NEIGHBOUR) {
-        RITZ_CHECK(
-            ritz_scene_neighbour(scene, k, component, &attached, &neighbour));
-        request.neighbour = &neighbour;
-    }
-    RITZ_CHECK(ritz_basis_make(method, &request, &basis));
+    RITZ_CHECK(ritz_body_request_new(scene, k, item, component, &own));
+    RITZ_CHECK(
+        ritz_basis_make(ritz_method_find(item->basis), &own.asked, &basis));
     return ritz_reduce(component, &basis, out);
 }
 

@@ -4,6 +4,7 @@
  */
 #include "fit/fitter.h"
 
+#include "assembly/assembly.h"
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
@@ -85,6 +86,39 @@ static ritz_status load_bodies(ritz_fitter *f)
     return RITZ_OK;
 }
 
+/* Whether two flexible bodies have the same model, attached ports and options of
+   their bases. */
+static ritz_status compare_bodies(const ritz_fitter *f, int64_t j, int64_t k,
+                                  bool *same)
+{
+    enum { WORDS = 1024 };
+    const ritz_scene_component *all = f->scene->component;
+    const ritz_scene_component *a = &all[f->body[j]], *b = &all[f->body[k]];
+    char words[2][WORDS] = {"", ""};
+
+    ritz_choice_print(&a->choice, WORDS, words[0]);
+    ritz_choice_print(&b->choice, WORDS, words[1]);
+    *same = strcmp(a->model, b->model) == 0 &&
+            (f->request.choice.given || strcmp(words[0], words[1]) == 0);
+    return *same ? ritz_stage_same_ports(f->scene, f->body[j], f->body[k], same)
+                 : RITZ_OK;
+}
+
+static ritz_status find_equal(ritz_fitter *f)
+{
+    RITZ_CHECK_NEW(f->equal, f->num_bodies);
+    for (int64_t k = 0; k < f->num_bodies; k++) {
+        bool same = false;
+
+        f->equal[k] = k;
+        for (int64_t j = 0; j < k && !same; j++) {
+            RITZ_CHECK(compare_bodies(f, j, k, &same));
+            f->equal[k] = same ? f->equal[j] : k;
+        }
+    }
+    return RITZ_OK;
+}
+
 static int compare_steps(const void *left, const void *right)
 {
     const ritz_fit_step *a = left;
@@ -107,24 +141,51 @@ static void ladder_draft_free(ladder_draft *r)
     free(r->step);
 }
 
-/* Modes of one body: a number of them, or all up to a frequency. */
-static ritz_status gather_modes(const ritz_fitter *f, int64_t k,
+static ritz_status append_steps(int64_t k, const ritz_pairs *pairs,
+                                ladder_draft *r)
+{
+    for (int64_t j = pairs->num_rigid; j < pairs->Phi.ncol; j++) {
+        RITZ_CHECK_ROOM(r->step, r->count, r->room);
+        r->step[r->count++] =
+            (ritz_fit_step){ritz_eigen_hertz(pairs->lambda[j]), k};
+    }
+    return RITZ_OK;
+}
+
+/* Keep the modes of a body for its bases, unless those of all bodies would take
+   too much memory. */
+static void keep_modes(ritz_fitter *f, int64_t k, ritz_pairs *pairs)
+{
+    int64_t held = pairs->Phi.nrow * pairs->Phi.ncol;
+
+    for (int64_t j = 0; j < f->num_bodies; j++)
+        if (j != k)
+            held += f->known[j].Phi.nrow * f->known[j].Phi.ncol;
+    ritz_pairs_free(&f->known[k]);
+    if (held <= f->most_entries)
+        RITZ_MOVE(f->known[k], *pairs);
+}
+
+/* Modes of body k and of those that equal it: a number of them, or all up to a
+   frequency. */
+static ritz_status gather_modes(ritz_fitter *f, int64_t k,
                                 const ritz_span *span, ladder_draft *r)
 {
     RITZ_OWN(ritz_pairs) pairs = {0};
     int64_t found = 0;
 
+    if (f->equal[k] != k)
+        return RITZ_OK;
     RITZ_CHECK_IN(
         ritz_fitter_body(f, k),
         ritz_eigen_sparse(&f->model[k].K, &f->model[k].M, span, &pairs));
     found = pairs.Phi.ncol - pairs.num_rigid;
-    for (int64_t j = pairs.num_rigid; j < pairs.Phi.ncol; j++) {
-        RITZ_CHECK_ROOM(r->step, r->count, r->room);
-        r->step[r->count++] =
-            (ritz_fit_step){ritz_eigen_hertz(pairs.lambda[j]), k};
-    }
+    for (int64_t j = k; j < f->num_bodies; j++)
+        if (f->equal[j] == k)
+            RITZ_CHECK(append_steps(j, &pairs, r));
     if (span->modes >= 0 && found >= span->modes && found > 0)
         r->limit = fmin(r->limit, r->step[r->count - 1].hertz);
+    keep_modes(f, k, &pairs);
     return RITZ_OK;
 }
 
@@ -142,13 +203,12 @@ static void set_ladder(ladder_draft *r, ritz_fitter *f)
     f->num_steps = count;
 }
 
-/* Modes of a body that are on the ladder. */
-static int64_t count_on_ladder(const ritz_fitter *f, int64_t body)
+int64_t ritz_fit_modes_to(const ritz_fitter *f, int64_t k, double hertz)
 {
     int64_t count = 0;
 
-    for (int64_t t = 0; t < f->num_steps; t++)
-        count += f->step[t].body == body;
+    for (int64_t t = 0; t < f->num_steps && f->step[t].hertz <= hertz; t++)
+        count += f->step[t].body == k;
     return count;
 }
 
@@ -163,7 +223,7 @@ ritz_status ritz_fit_extend(ritz_fitter *f, ritz_fit_end *end)
 
     *end = RITZ_FIT_END_FAR;
     for (int64_t k = 0; k < f->num_bodies && room > 0; k++) {
-        int64_t has = count_on_ladder(f, k);
+        int64_t has = ritz_fit_modes_to(f, k, HUGE_VAL);
         int64_t more = has + AT_FIRST < room ? has + AT_FIRST : room;
         const ritz_span span = {.modes = has + more};
         ritz_status status = RITZ_OK;
@@ -191,6 +251,8 @@ ritz_status ritz_fit_bodies(ritz_fitter *f)
     RITZ_OWN(ladder_draft) draft = {.limit = HUGE_VAL};
 
     RITZ_CHECK(load_bodies(f));
+    RITZ_CHECK(find_equal(f));
+    RITZ_CHECK_NEW(f->known, f->num_bodies);
     for (int64_t k = 0; k < f->num_bodies; k++)
         RITZ_CHECK(gather_modes(f, k, &span, &draft));
     set_ladder(&draft, f);

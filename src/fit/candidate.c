@@ -17,9 +17,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Entries of T of all bodies that were made: half a gigabyte. */
-static const int64_t most_entries = INT64_C(1) << 26;
-
 /* --- judged --------------------------------------------------------------- */
 
 static void set_refusal(const char *why, ritz_fit_candidate *candidate)
@@ -134,7 +131,17 @@ static bool keeps_basis(const ritz_fitter *f, const ritz_dense *T)
 
     for (int64_t k = 0; k < f->num_made; k++)
         held += f->made[k].reduced.T.nrow * f->made[k].reduced.T.ncol;
-    return f->scene && f->place[0].estimator && held <= most_entries;
+    return f->scene && f->place[0].estimator && held <= f->most_entries;
+}
+
+/* Whether this is the body, or one that equals it. A refusal names its body. */
+static bool serves_body(const ritz_fitter *f, const ritz_fit_made *made,
+                        const ritz_method *method, int64_t body, int64_t modes)
+{
+    return made->method == method && made->modes == modes &&
+           (made->body == body ||
+            (made->status == RITZ_OK &&
+             ritz_fit_are_equal(f, method, made->body, body)));
 }
 
 /* Find or make a body reduced by a method with a number of modes. If it cannot
@@ -148,16 +155,12 @@ static ritz_status make_body(ritz_fitter *f, const ritz_method *method,
     ritz_fit_made *made = NULL;
     ritz_status status = RITZ_OK;
 
-    for (*at = 0; *at < f->num_made; (*at)++) {
-        const ritz_fit_made *m = &f->made[*at];
-
-        if (m->method == method && m->body == body && m->modes == modes)
+    for (*at = 0; *at < f->num_made; (*at)++)
+        if (serves_body(f, &f->made[*at], method, body, modes))
             return RITZ_OK;
-    }
     RITZ_CHECK_ROOM(f->made, f->num_made, f->room_made);
-    status = f->scene
-                 ? ritz_fit_body(f, method, body, modes, &reduced)
-                 : ritz_fit_take(f, method, modes, false, &reduced, &parts);
+    status = ritz_fit_take(f, method, body, modes,
+                           f->scene && f->place[0].estimator, &reduced, &parts);
     if (status == RITZ_OK)
         status = ritz_reduced_install(&reduced);
     if (status == RITZ_ERR_MEMORY)

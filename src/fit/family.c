@@ -2,7 +2,7 @@
  * The reduction of a flexible body by a method with some number of modes, and
  * the kinds of its columns.
  *
- * All candidates of a nested method on a component share one basis. A method is
+ * All candidates of a nested method share one basis of each body. A method is
  * nested if its basis with m modes consists of columns of its basis with N > m
  * modes: all columns that are no modes, and the first m modes. With S the
  * columns of the unit matrix that select these,
@@ -21,6 +21,7 @@
  */
 #include "fit/fitter.h"
 
+#include "assembly/assembly.h"
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
@@ -104,66 +105,91 @@ static ritz_choice choose_options(const ritz_fitter *fitter,
     return choice;
 }
 
-/* The request for a basis of the component; all of it is borrowed. */
-static ritz_request request_basis(const ritz_fitter *f,
-                                  const ritz_method *method, int64_t modes)
+/* The request for a basis of flexible body k of a scene. */
+static ritz_status request_of_scene(const ritz_fitter *f,
+                                    const ritz_method *method, int64_t k,
+                                    int64_t modes, ritz_body_request *out)
 {
-    ritz_request request = RITZ_REQUEST_NONE;
+    ritz_scene_component item = f->scene->component[f->body[k]]; /* borrowed */
 
-    request.component = f->component;
-    request.modes = modes;
-    request.choice = choose_options(f, method);
-    request.attached = f->attached;
-    return request;
-}
-
-/* The modes of the component that the reference has; NULL if its stiffness is
-   not the component's, which is without dampers. */
-static const ritz_pairs *find_known(const ritz_fitter *f)
-{
-    return f->component->dampers.count > 0
-               ? NULL
-               : ritz_reference_pairs(f->place[0].reference);
-}
-
-/* @param[in] counted  prove by a count that no mode is missing */
-static ritz_status reduce_component(const ritz_fitter *f,
-                                    const ritz_method *method, int64_t modes,
-                                    bool counted, ritz_reduced *out)
-{
-    ritz_request request = request_basis(f, method, modes);
-    RITZ_OWN(ritz_basis) basis = {0};
-
-    if (!counted) {
-        request.choice.uncounted = true;
-        request.known = find_known(f);
-    }
-    RITZ_CHECK(ritz_basis_make(method, &request, &basis));
-    return ritz_reduce(f->component, &basis, out);
-}
-
-ritz_status ritz_fit_body(ritz_fitter *f, const ritz_method *method, int64_t k,
-                          int64_t modes, ritz_reduced *out)
-{
-    ritz_scene_component item = {0};
-
-    if (!f->scene)
-        return reduce_component(f, method, modes, true, out);
-    if (method == &ritz_fit_compare)
-        return ritz_fit_second_body(f, k, modes, out);
-    item = f->scene->component[f->body[k]];
     (void)snprintf(item.basis, sizeof item.basis, "%s", method->name);
     item.modes = modes;
     item.up_to_hz = 0.0;
     if (f->request.choice.given)
         item.choice = f->request.choice;
     item.choice.given &= method->uses;
-    return ritz_context(
-        ritz_stage_reduce(f->scene, f->body[k], &item, &f->model[k], out),
-        item.name);
+    return ritz_body_request_new(f->scene, f->body[k], &item, &f->model[k],
+                                 out);
 }
 
-/* --- the basis of a component that is kept -------------------------------- */
+/* The request for a basis of flexible body k. */
+static ritz_status request_basis(const ritz_fitter *f,
+                                 const ritz_method *method, int64_t k,
+                                 int64_t modes, ritz_body_request *out)
+{
+    ritz_request *request = &out->asked;
+
+    if (f->scene)
+        return request_of_scene(f, method, k, modes, out);
+    *request = (ritz_request)RITZ_REQUEST_NONE;
+    request->component = f->component;
+    request->modes = modes;
+    request->choice = choose_options(f, method);
+    request->attached = f->attached;
+    return RITZ_OK;
+}
+
+/* The modes of flexible body k that the ladder of a scene or the reference of a
+   component has; NULL if the stiffness of the reference is not the component's,
+   which is without dampers. */
+static const ritz_pairs *find_known(const ritz_fitter *f, int64_t k)
+{
+    const ritz_pairs *ladder = f->scene ? &f->known[f->equal[k]] : NULL;
+
+    if (f->scene)
+        return ladder->Phi.val ? ladder : NULL;
+    return f->component->dampers.count > 0
+               ? NULL
+               : ritz_reference_pairs(f->place[0].reference);
+}
+
+/* @param[in] counted  prove by a count that no mode is missing */
+static ritz_status reduce_body(const ritz_fitter *f, const ritz_method *method,
+                               int64_t k, int64_t modes, bool counted,
+                               ritz_reduced *out)
+{
+    RITZ_OWN(ritz_body_request) own = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+
+    RITZ_CHECK(request_basis(f, method, k, modes, &own));
+    if (!counted) {
+        own.asked.choice.uncounted = true;
+        own.asked.known = find_known(f, k);
+    }
+    RITZ_CHECK(ritz_basis_make(method, &own.asked, &basis));
+    return ritz_reduce(own.asked.component, &basis, out);
+}
+
+ritz_status ritz_fit_body(ritz_fitter *f, const ritz_method *method, int64_t k,
+                          int64_t modes, ritz_reduced *out)
+{
+    ritz_status status = RITZ_OK;
+
+    if (f->scene && method == &ritz_fit_compare)
+        return ritz_fit_second_body(f, k, modes, out);
+    status = reduce_body(f, method, k, modes, true, out);
+    return f->scene ? ritz_context(status, ritz_fitter_body(f, k)) : status;
+}
+
+bool ritz_fit_are_equal(const ritz_fitter *f, const ritz_method *method,
+                        int64_t j, int64_t k)
+{
+    return j == k ||
+           (f->equal[j] == f->equal[k] && method != &ritz_fit_compare &&
+            !(method->uses & RITZ_USES_NEIGHBOUR));
+}
+
+/* --- the basis of a body that is kept ------------------------------------- */
 
 void ritz_fit_family_free(ritz_fit_family *family)
 {
@@ -181,7 +207,7 @@ static bool is_mode(ritz_column_kind kind)
    prevent that: their part in the modes was removed, so that they change with
    the number of modes. A residual mode that was left out prevents it too: with
    fewer modes it may be large enough to be kept. */
-static bool contains_fewer(const ritz_fitter *f, const ritz_method *method,
+static bool contains_fewer(const ritz_method *method, int64_t attached,
                            const ritz_columns *columns)
 {
     int64_t residuals = 0;
@@ -191,7 +217,7 @@ static bool contains_fewer(const ritz_fitter *f, const ritz_method *method,
             return false;
         residuals += columns->kind[j] == RITZ_COLUMN_RESIDUAL;
     }
-    return !method->narrow || residuals == f->attached.count;
+    return !method->narrow || residuals == attached;
 }
 
 /* Whether the frequencies of two modes differ so little that both are taken or
@@ -232,59 +258,89 @@ static bool is_shared(const ritz_method *method)
     return method->nested || method->narrow;
 }
 
-static ritz_status make_whole(ritz_fitter *f, const ritz_method *method,
+/* Whether T of a kept basis serves a purpose after the reduction: shapes of a
+   component are taken from it, bounds of a scene, and the combinations of a
+   method. */
+static bool needs_basis(const ritz_fitter *f, const ritz_method *method)
+{
+    return !f->scene || f->place[0].estimator || method->narrow;
+}
+
+static ritz_status make_whole(ritz_fitter *f, const ritz_fit_family *family,
                               int64_t modes, ritz_reduced *out,
                               ritz_dense *parts)
 {
-    RITZ_CHECK(reduce_component(f, method, modes, !is_shared(method), out));
-    return ritz_reference_parts(f->place[0].reference, &out->T, parts);
+    const ritz_method *method = family->method;
+
+    RITZ_CHECK(
+        reduce_body(f, method, family->body, modes, !is_shared(method), out));
+    if (!needs_basis(f, method))
+        ritz_dense_free(&out->T);
+    return f->scene
+               ? RITZ_OK
+               : ritz_reference_parts(f->place[0].reference, &out->T, parts);
 }
 
-/* Find what is kept for a method; at the first call, an empty entry. */
+/* Find what is kept of body k for a method; at the first call, an empty
+   entry. */
 static ritz_status find_family(ritz_fitter *f, const ritz_method *method,
-                               ritz_fit_family **out)
+                               int64_t k, ritz_fit_family **out)
 {
-    for (int64_t k = 0; k < f->num_families; k++)
-        if (f->family[k].method == method) {
-            *out = &f->family[k];
+    for (int64_t t = 0; t < f->num_families; t++)
+        if (f->family[t].method == method &&
+            ritz_fit_are_equal(f, method, f->family[t].body, k)) {
+            *out = &f->family[t];
             return RITZ_OK;
         }
     RITZ_CHECK_ROOM(f->family, f->num_families, f->room_families);
     *out = &f->family[f->num_families++];
     **out =
         (ritz_fit_family){.method = method,
+                          .body = k,
                           .modes = -1,
                           .exact = !method->nested && method->wide != method};
     return RITZ_OK;
 }
 
-/* Flexible modes of the component that are known without the next one above
-   them: so many a method of free modes need not compute. */
-static int64_t count_known(const ritz_fitter *f)
+/* Flexible modes of a body that are known without the next one above them: so
+   many a method of free modes need not compute. */
+static int64_t count_known(const ritz_fitter *f, int64_t k)
 {
-    const ritz_pairs *known = find_known(f);
+    const ritz_pairs *known = find_known(f, k);
     const int64_t flexible = known ? known->Phi.ncol - known->num_rigid : 0;
 
     return flexible > 0 ? flexible - 1 : 0;
 }
 
+/* Modes in the band: of the reference of a component, and free modes of a body
+   of a scene. */
+static int64_t count_in_band(const ritz_fitter *f, int64_t k)
+{
+    int64_t rigid = 0;
+
+    return f->scene ? ritz_fit_modes_to(f, k, f->request.tolerance.band_hz[1])
+                    : ritz_reference_modes(f->place[0].reference, &rigid);
+}
+
 /* How many modes the basis gets that is made when a candidate with @p modes
-   modes needs one. */
+   modes needs one: more than a candidate can ask for are of no use. */
 static int64_t choose_modes(const ritz_fitter *f, const ritz_fit_family *family,
                             int64_t modes)
 {
-    int64_t rigid = 0, more = 2 * family->modes;
+    const int64_t known = count_known(f, family->body);
+    const int64_t most =
+        f->scene ? ritz_fit_modes_to(f, family->body, HUGE_VAL) : f->largest;
+    int64_t more = 2 * family->modes;
 
     if (family->exact || modes <= family->modes) /* dropped by make_room */
         return family->exact ? modes : family->modes;
     if (family->modes < 0)
-        more = FOR_EACH * ritz_reference_modes(f->place[0].reference, &rigid) +
-               AND_MORE;
-    if (family->modes < 0 && family->method->narrow &&
-        modes <= count_known(f) && count_known(f) < more)
-        more = count_known(f);
-    if (more > f->largest)
-        more = f->largest;
+        more = FOR_EACH * count_in_band(f, family->body) + AND_MORE;
+    if (family->modes < 0 && family->method->narrow && modes <= known &&
+        known < more)
+        more = known;
+    if (more > most)
+        more = most;
     return more > modes ? more : modes;
 }
 
@@ -294,7 +350,7 @@ static int64_t count_entries(const ritz_fit_family *family)
 }
 
 /* The kept basis of another method that has not been used for longest; NULL:
-   there is none. */
+   there is none. A candidate needs the bases of all its bodies by one method. */
 static ritz_fit_family *find_oldest(const ritz_fitter *f,
                                     const ritz_fit_family *keep)
 {
@@ -303,7 +359,7 @@ static ritz_fit_family *find_oldest(const ritz_fitter *f,
     for (int64_t k = 0; k < f->num_families; k++) {
         ritz_fit_family *family = &f->family[k];
 
-        if (family != keep && count_entries(family) > 0 &&
+        if (family->method != keep->method && count_entries(family) > 0 &&
             (!oldest || family->used < oldest->used))
             oldest = family;
     }
@@ -326,23 +382,36 @@ static void make_room(ritz_fitter *f, const ritz_fit_family *keep)
     }
 }
 
+/* Dofs of the body that are attached. */
+static ritz_status count_attached(const ritz_fitter *f,
+                                  const ritz_fit_family *family, int64_t *out)
+{
+    RITZ_OWN(ritz_body_request) own = {0};
+
+    RITZ_CHECK(request_basis(f, family->method, family->body, 0, &own));
+    *out = own.asked.attached.count;
+    return RITZ_OK;
+}
+
 /* Make the basis for a candidate with @p modes modes. If one with more modes
    fails or has static columns, make one with exactly @p modes: only if that
    fails is the candidate refused. */
 static ritz_status renew_family(ritz_fitter *f, int64_t modes,
                                 ritz_fit_family *family)
 {
+    int64_t attached = 0;
+
+    RITZ_CHECK(count_attached(f, family, &attached));
     for (bool served = false; !served;) {
         RITZ_OWN(ritz_reduced) whole = {0};
         RITZ_OWN(ritz_dense) parts = {0};
         const int64_t made = choose_modes(f, family, modes);
-        const ritz_status status =
-            make_whole(f, family->method, made, &whole, &parts);
+        const ritz_status status = make_whole(f, family, made, &whole, &parts);
 
         if (status == RITZ_ERR_MEMORY || made == modes)
             RITZ_CHECK(status);
         if (status != RITZ_OK ||
-            !contains_fewer(f, family->method, &whole.columns))
+            !contains_fewer(family->method, attached, &whole.columns))
             family->exact = true;
         served = !family->exact || made == modes;
         if (!served)
@@ -363,8 +432,8 @@ static bool can_serve(const ritz_fit_family *family, int64_t modes)
            (family->exact ? modes == family->modes : modes <= family->modes);
 }
 
-/* Reduce the component by some columns of the kept basis; find Phi'M T of
-   these. */
+/* Reduce the body by some columns of the kept basis; find Phi'M T of these if
+   it is a component. */
 static ritz_status take_columns(const ritz_fit_family *family, int64_t count,
                                 const int64_t *at, bool with_T,
                                 ritz_reduced *out, ritz_dense *parts)
@@ -377,10 +446,11 @@ static ritz_status take_columns(const ritz_fit_family *family, int64_t count,
     }
     RITZ_CHECK(ritz_reduced_nest(&whole, count, at, 1, out));
     ritz_nested_free(&out->nested);
-    return ritz_dense_pick(&family->parts, count, at, parts);
+    return family->parts.val ? ritz_dense_pick(&family->parts, count, at, parts)
+                             : RITZ_OK;
 }
 
-/* Reduce the component by combinations V of the columns of the kept basis. */
+/* Reduce the body by combinations V of the columns of the kept basis. */
 static ritz_status combine_columns(const ritz_fit_family *family,
                                    const ritz_dense *V, bool with_T,
                                    ritz_reduced *out, ritz_dense *parts)
@@ -392,18 +462,19 @@ static ritz_status combine_columns(const ritz_fit_family *family,
         whole.invariants = (ritz_invariants){0};
     }
     RITZ_CHECK(ritz_reduced_project(&whole, V, out));
-    return ritz_dense_mul(&family->parts, V, parts);
+    return family->parts.val ? ritz_dense_mul(&family->parts, V, parts)
+                             : RITZ_OK;
 }
 
 /* Find the kept basis from which the method's bases with at most `modes` modes
    can be made; if there is none, make it. If that fails, or if bases with fewer
    modes cannot be made from it, the family is exact. */
 static ritz_status find_wide(ritz_fitter *f, const ritz_method *method,
-                             int64_t modes, ritz_fit_family **out)
+                             int64_t k, int64_t modes, ritz_fit_family **out)
 {
     ritz_fit_family *family = NULL;
 
-    RITZ_CHECK(find_family(f, method->wide, &family));
+    RITZ_CHECK(find_family(f, method->wide, k, &family));
     if (!family->exact && !can_serve(family, modes)) {
         const ritz_status status = renew_family(f, modes, family);
 
@@ -417,13 +488,14 @@ static ritz_status find_wide(ritz_fitter *f, const ritz_method *method,
 }
 
 /*
- * Reduce the component by a method whose basis can be made from a kept one with
- * more modes. If it cannot, because residual modes depend on others, @p out
- * stays empty and the family is exact from now on.
+ * Reduce body k by a method whose basis can be made from a kept one with more
+ * modes. If it cannot, because residual modes depend on others, @p out stays
+ * empty and the family is exact from now on.
  */
 static ritz_status take_narrow(ritz_fitter *f, const ritz_request *request,
-                               const ritz_method *method, bool with_T,
-                               ritz_reduced *out, ritz_dense *parts)
+                               const ritz_method *method, int64_t k,
+                               bool with_T, ritz_reduced *out,
+                               ritz_dense *parts)
 {
     ritz_fit_family *family = NULL;
     RITZ_OWN(ritz_dense) V = {0};
@@ -431,7 +503,7 @@ static ritz_status take_narrow(ritz_fitter *f, const ritz_request *request,
     RITZ_OWN_ARRAY int64_t *at = NULL;
     int64_t count = 0;
 
-    RITZ_CHECK(find_wide(f, method, request->modes, &family));
+    RITZ_CHECK(find_wide(f, method, k, request->modes, &family));
     if (family->exact)
         return RITZ_OK;
     RITZ_CHECK_NEW(at, family->whole.columns.count);
@@ -450,16 +522,16 @@ static ritz_status take_narrow(ritz_fitter *f, const ritz_request *request,
     return RITZ_OK;
 }
 
-/* Reduce the component by columns of the method's own kept basis. */
+/* Reduce body k by columns of the method's own kept basis. */
 static ritz_status take_own(ritz_fitter *f, const ritz_method *method,
-                            int64_t modes, bool with_T, ritz_reduced *out,
-                            ritz_dense *parts)
+                            int64_t k, int64_t modes, bool with_T,
+                            ritz_reduced *out, ritz_dense *parts)
 {
     RITZ_OWN_ARRAY int64_t *at = NULL;
     ritz_fit_family *family = NULL;
     int64_t count = 0;
 
-    RITZ_CHECK(find_family(f, method, &family));
+    RITZ_CHECK(find_family(f, method, k, &family));
     if (!can_serve(family, modes))
         RITZ_CHECK(renew_family(f, modes, family));
     family->used = ++f->num_uses;
@@ -467,24 +539,39 @@ static ritz_status take_own(ritz_fitter *f, const ritz_method *method,
     count = choose_columns(&family->whole.columns,
                            family->exact ? INT64_MAX : modes, at);
     if (count == 0) /* the method may refuse that, and says why */
-        return make_whole(f, method, modes, out, parts);
+        return make_whole(f, family, modes, out, parts);
     return take_columns(family, count, at, with_T, out, parts);
 }
 
-ritz_status ritz_fit_take(ritz_fitter *f, const ritz_method *method,
+/* Reduce body k by the basis that is kept of it, or of another method's. */
+static ritz_status take_kept(ritz_fitter *f, const ritz_method *method,
+                             int64_t k, int64_t modes, bool with_T,
+                             ritz_reduced *out, ritz_dense *parts)
+{
+    RITZ_OWN(ritz_body_request) own = {0};
+    ritz_request *request = &own.asked;
+
+    RITZ_CHECK(request_basis(f, method, k, modes, &own));
+    if (is_shared(method) && method->uses & RITZ_USES_COUNT) {
+        request->choice.uncounted = true;
+        request->choice.given |= RITZ_USES_COUNT;
+    }
+    if (method->narrow)
+        RITZ_CHECK(take_narrow(f, request, method, k, with_T, out, parts));
+    if (out->K.ncol == 0)
+        RITZ_CHECK(take_own(f, method, k, modes, with_T, out, parts));
+    ritz_request_print(request, out->origin.options);
+    return RITZ_OK;
+}
+
+ritz_status ritz_fit_take(ritz_fitter *f, const ritz_method *method, int64_t k,
                           int64_t modes, bool with_T, ritz_reduced *out,
                           ritz_dense *parts)
 {
-    ritz_request request = request_basis(f, method, modes);
+    ritz_status status = RITZ_OK;
 
-    if (is_shared(method) && method->uses & RITZ_USES_COUNT) {
-        request.choice.uncounted = true;
-        request.choice.given |= RITZ_USES_COUNT;
-    }
-    if (method->narrow)
-        RITZ_CHECK(take_narrow(f, &request, method, with_T, out, parts));
-    if (out->K.ncol == 0)
-        RITZ_CHECK(take_own(f, method, modes, with_T, out, parts));
-    ritz_request_print(&request, out->origin.options);
-    return RITZ_OK;
+    if (f->scene && !is_shared(method))
+        return ritz_fit_body(f, method, k, modes, out);
+    status = take_kept(f, method, k, modes, with_T, out, parts);
+    return f->scene ? ritz_context(status, ritz_fitter_body(f, k)) : status;
 }

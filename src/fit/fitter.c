@@ -303,6 +303,7 @@ static ritz_status open_component(const ritz_component *component,
         RITZ_CHECK_IN("damping",
                       ritz_damping_parse(component->damping, &limits->damping));
     RITZ_CHECK_NEW(f->body, 1);
+    RITZ_CHECK_NEW(f->equal, 1);
     RITZ_CHECK_NEW(f->place, 1);
     RITZ_CHECK(ritz_bodies_new(1, &f->still));
     f->num_bodies = f->num_places = f->num_listed = 1;
@@ -319,7 +320,8 @@ static ritz_status open_component(const ritz_component *component,
     return RITZ_OK;
 }
 
-/* Most entries of T of all kept bases of a component: half a gigabyte. */
+/* Most entries of T of all kept bases, of T of all bodies that were made, and of
+   the modes of a scene's bodies: half a gigabyte each. */
 static const int64_t most_entries = INT64_C(1) << 26;
 
 ritz_status ritz_fitter_new(const ritz_component *component,
@@ -346,6 +348,7 @@ ritz_status ritz_fitter_scene(const ritz_scene *scene,
     RITZ_CHECK_NEW(f, 1);
     f->request = *request;
     f->scene = scene;
+    f->most_entries = most_entries;
     RITZ_CHECK(ritz_orders_new(&f->orders));
     RITZ_CHECK(open_scene(scene, f));
     RITZ_MOVE(*out, f);
@@ -411,6 +414,8 @@ void ritz_fitter_free(ritz_fitter **fitter)
         free_place(f, &f->place[k]);
     for (int64_t k = 0; f->model && k < f->num_bodies; k++)
         ritz_component_free(&f->model[k]);
+    for (int64_t k = 0; f->known && k < f->num_bodies; k++)
+        ritz_pairs_free(&f->known[k]);
     ritz_bodies_free(&f->still);
     ritz_orders_free(&f->orders);
     for (int64_t k = 0; k < f->num_made; k++) {
@@ -423,7 +428,7 @@ void ritz_fitter_free(ritz_fitter **fitter)
         ritz_fit_ordered_free(&f->ordered[k]);
     ritz_fit_second_free(&f->second);
     ritz_dofs_free(&f->attached);
-    RITZ_FREE(f->place, f->body, f->model, f->step, f->made, f->family,
-              f->ordered, f);
+    RITZ_FREE(f->place, f->body, f->model, f->equal, f->known, f->step, f->made,
+              f->family, f->ordered, f);
     *fitter = NULL;
 }

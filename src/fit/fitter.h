@@ -34,14 +34,16 @@ typedef struct ritz_fit_made {
     char refusal[256];
 } ritz_fit_made;
 
-/* The basis of a component that a method made last. If the method is nested
+/* The basis of a body that a method made last. If the method is nested
    (family.c), candidates with fewer modes take their columns from it. */
 typedef struct ritz_fit_family {
     const ritz_method *method;
+    int64_t body;       /* flexible body, the first of those that are equal */
     bool exact;         /* it serves candidates with `modes` modes only */
     int64_t modes;      /* that it was made with; -1: none was made */
-    ritz_reduced whole; /* {0}: dropped for lack of room */
-    ritz_dense parts;   /* Phi'M T of all its columns */
+    ritz_reduced whole; /* {0}: dropped for lack of room; without T if a scene
+                           has no bounds, which alone need it */
+    ritz_dense parts;   /* of a component: Phi'M T of all its columns */
     int64_t used;       /* value of num_uses at its last use */
 } ritz_fit_family;
 
@@ -97,6 +99,11 @@ struct ritz_fitter {
     int64_t num_bodies;    /* flexible ones; 1 of a component */
     int64_t *body;         /* num_bodies, component of the scene */
     ritz_component *model; /* num_bodies, of a scene */
+    int64_t *equal;        /* num_bodies: the first flexible body with the same
+                              model, ports and options of its basis */
+    ritz_pairs *known;     /* num_bodies, of a scene: free modes of each body,
+                              as many as the ladder has; Phi is {0} for lack of
+                              room, and of bodies that equal another */
     int64_t num_first;     /* rungs of the ladder that all are tried on */
     int64_t num_steps;     /* rungs there are beyond the lowest */
     ritz_fit_step *step;   /* num_steps, ascending frequencies */
@@ -104,9 +111,10 @@ struct ritz_fitter {
     int64_t num_made, room_made;
     ritz_fit_made *made;
     int64_t num_families, room_families;
-    ritz_fit_family *family; /* of a component */
-    int64_t num_uses;        /* of all families */
-    int64_t most_entries;    /* of T of all kept bases together */
+    ritz_fit_family *family;
+    int64_t num_uses;     /* of all families */
+    int64_t most_entries; /* of T of all kept bases together, of T of all bodies
+                             that were made, and of `known` */
     int64_t num_ordered, room_ordered;
     ritz_fit_ordered *ordered;
     ritz_fit_second second;
@@ -129,6 +137,10 @@ ritz_status ritz_fit_bodies(ritz_fitter *fitter);
  * @param[out] end  why it could not be; RITZ_FIT_END_NONE: it is longer
  */
 ritz_status ritz_fit_extend(ritz_fitter *fitter, ritz_fit_end *end);
+
+/** Modes of flexible body @p k up to a frequency, as far as the ladder has
+ * them. */
+int64_t ritz_fit_modes_to(const ritz_fitter *fitter, int64_t k, double hertz);
 
 /**
  * Join flexible bodies to those that stay. All are borrowed until
@@ -158,22 +170,30 @@ ritz_status ritz_fit_kinds(const ritz_reduced *whole, ritz_column_kind *kind);
 ritz_status ritz_fit_body(ritz_fitter *fitter, const ritz_method *method,
                           int64_t k, int64_t modes, ritz_reduced *out);
 
+/** Whether flexible bodies @p j and @p k have the same reduced models by a
+ * method: they are equal, and their neighbours do not matter to it. */
+bool ritz_fit_are_equal(const ritz_fitter *fitter, const ritz_method *method,
+                        int64_t j, int64_t k);
+
 /**
- * Reduce a component by a method with a number of modes, for a candidate. If
- * the method is nested, columns are taken from a basis with more modes, which
- * is made once, and again with twice as many modes when more are asked for. Of
- * any other method the last basis is kept, in case it is asked for again.
+ * Reduce flexible body @p k by a method with a number of modes, for a candidate.
+ * If the method is nested, columns are taken from a basis with more modes, which
+ * is made once for all bodies that are equal, and again with twice as many modes
+ * when more are asked for. Of any other method the last basis of a component is
+ * kept, in case it is asked for again; that of a scene's body is not.
  *
- * @param[in]  with_T  whether @p out gets T (n x r) and invariants
+ * @param[in]  with_T  whether @p out gets T (n x r) and invariants; of a scene
+ *                     without bounds T is not kept
  * @param[out] out     dampers not installed
- * @param[out] parts   Phi'M T, modes of the reference x r
+ * @param[out] parts   of a component: Phi'M T, modes of the reference x r; {0}:
+ *                     of a scene
  * @return as ritz_basis_make
  * @cost   a basis if no kept one serves; otherwise O(N^2 r) for the N columns
  *         of the kept one, and O(n r) with T
  */
 ritz_status ritz_fit_take(ritz_fitter *fitter, const ritz_method *method,
-                          int64_t modes, bool with_T, ritz_reduced *out,
-                          ritz_dense *parts);
+                          int64_t k, int64_t modes, bool with_T,
+                          ritz_reduced *out, ritz_dense *parts);
 
 void ritz_fit_family_free(ritz_fit_family *family);
 
@@ -305,11 +325,17 @@ void ritz_fit_ordered_free(ritz_fit_ordered *ordered);
 
 /* --- nest.c --------------------------------------------------------------- */
 
-/** Make the flexible bodies of a candidate without the columns that it leaves
- * out; dampers not installed. */
+/**
+ * Make the flexible bodies of a candidate without the columns that it leaves
+ * out; dampers not installed.
+ *
+ * @param[in] proven  make each basis anew with the modes of the candidate, and
+ *                    prove by a count that none is missing; otherwise take the
+ *                    bases that the search keeps, which is cheaper
+ */
 ritz_status ritz_fit_make_bodies(ritz_fitter *fitter,
                                  const ritz_fit_candidate *candidate,
-                                 ritz_bodies *out);
+                                 bool proven, ritz_bodies *out);
 
 /** Find the bounds of a candidate that was tried, the worst of all places. */
 ritz_status ritz_fit_bound(ritz_fitter *fitter, ritz_fit_candidate *candidate);

@@ -455,20 +455,20 @@ static ritz_status make_uncut(ritz_fitter *f,
     return RITZ_OK;
 }
 
-/* The same from the basis that the search keeps, which is cheaper. Remarks and
-   options of a component's body are those of this basis, which may have more
-   modes. */
+/* The same from the bases that the search keeps, which is cheaper. Remarks and
+   options of a body are those of its basis, which may have more modes. */
 static ritz_status take_uncut(ritz_fitter *f,
                               const ritz_fit_candidate *candidate,
                               ritz_bodies *out)
 {
-    RITZ_OWN(ritz_dense) parts = {0};
+    RITZ_CHECK(ritz_bodies_new(f->num_bodies, out));
+    for (int64_t k = 0; k < f->num_bodies; k++) {
+        RITZ_OWN(ritz_dense) parts = {0};
 
-    if (f->scene)
-        return make_uncut(f, candidate, out);
-    RITZ_CHECK(ritz_bodies_new(1, out));
-    return ritz_fit_take(f, candidate->method, candidate->modes[0], true,
-                         &out->item[0], &parts);
+        RITZ_CHECK(ritz_fit_take(f, candidate->method, k, candidate->modes[k],
+                                 true, &out->item[k], &parts));
+    }
+    return RITZ_OK;
 }
 
 /* The fewest columns in a feasible row of the path below its first row, which
@@ -488,18 +488,20 @@ static ritz_status find_cut(nesting *n, int64_t *columns)
 }
 
 /* Cut the bodies of a candidate to the columns that matter most; not nested.
+   @param[in]  proven   as for ritz_fit_make_bodies
    @param[in]  columns  of all bodies together; 0: as few as are feasible
    @param[out] found    how many there are; 0: no such cut, and no body */
 static ritz_status cut_candidate(ritz_fitter *f,
                                  const ritz_fit_candidate *candidate,
-                                 int64_t columns, int64_t *found,
+                                 bool proven, int64_t columns, int64_t *found,
                                  ritz_bodies *out)
 {
     [[maybe_unused]] RITZ_OWN(ritz_blas_single) single = ritz_blas_single_new();
     RITZ_OWN(nesting) n = {0};
 
     *found = 0;
-    RITZ_CHECK(take_uncut(f, candidate, &n.whole));
+    RITZ_CHECK(proven ? make_uncut(f, candidate, &n.whole)
+                      : take_uncut(f, candidate, &n.whole));
     RITZ_CHECK(order_columns(f, candidate, &n));
     if (columns == 0)
         RITZ_CHECK(find_cut(&n, &columns));
@@ -519,13 +521,15 @@ static ritz_status cut_candidate(ritz_fitter *f,
 
 ritz_status ritz_fit_make_bodies(ritz_fitter *f,
                                  const ritz_fit_candidate *candidate,
-                                 ritz_bodies *out)
+                                 bool proven, ritz_bodies *out)
 {
     int64_t found = 0;
 
     if (candidate->left_out == 0)
-        return take_uncut(f, candidate, out);
-    RITZ_CHECK(cut_candidate(f, candidate, candidate->columns, &found, out));
+        return proven ? make_uncut(f, candidate, out)
+                      : take_uncut(f, candidate, out);
+    RITZ_CHECK(
+        cut_candidate(f, candidate, proven, candidate->columns, &found, out));
     RITZ_REFUSE_IF(found == 0, RITZ_ERR_ARGUMENT,
                    "the candidate is none of this scene's: no cut of it has "
                    "%" PRId64 " columns",
@@ -556,7 +560,7 @@ ritz_status ritz_fit_bound(ritz_fitter *f, ritz_fit_candidate *candidate)
     if (f->scene) /* bounded already where columns are left out */
         return candidate->left_out > 0 ? RITZ_OK
                                        : ritz_fit_bound_joined(f, candidate);
-    RITZ_CHECK(ritz_fit_make_bodies(f, candidate, &joined.own));
+    RITZ_CHECK(ritz_fit_make_bodies(f, candidate, false, &joined.own));
     RITZ_CHECK(ritz_fit_join_own(f, &joined));
     return ritz_fit_bound_stage(f, &joined.stage, candidate);
 }
@@ -572,7 +576,7 @@ ritz_status ritz_fit_trim(ritz_fitter *f, const ritz_fit_candidate *from,
     RITZ_OWN(ritz_fit_joined) cut = {0};
 
     RITZ_CHECK_COPY(less.modes, from->modes, f->num_bodies);
-    RITZ_CHECK(cut_candidate(f, from, 0, &less.columns, &cut.own));
+    RITZ_CHECK(cut_candidate(f, from, false, 0, &less.columns, &cut.own));
     if (less.columns == 0)
         return RITZ_OK;
     less.left_out = from->columns - less.columns;
@@ -591,7 +595,7 @@ static ritz_status make_plain(ritz_fitter *f,
 {
     RITZ_OWN(ritz_bodies) body = {0};
 
-    RITZ_CHECK(ritz_fit_make_bodies(f, candidate, &body));
+    RITZ_CHECK(ritz_fit_make_bodies(f, candidate, false, &body));
     RITZ_CHECK(ritz_measures_copy(&candidate->errors, &body.item[0].errors));
     RITZ_MOVE(*out, body.item[0]);
     return RITZ_OK;
@@ -646,7 +650,7 @@ static ritz_status make_answer(ritz_fitter *f,
 {
     RITZ_OWN(nesting) n = {0};
 
-    RITZ_CHECK(ritz_fit_make_bodies(f, candidate, &n.whole));
+    RITZ_CHECK(ritz_fit_make_bodies(f, candidate, !f->stopped, &n.whole));
     for (int64_t k = 0, j = 0; k < f->still.count; k++)
         if (j < f->num_bodies && f->body[j] == k)
             j++;

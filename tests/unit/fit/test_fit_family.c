@@ -101,7 +101,8 @@ static void compare_all(const ritz_method *method, ritz_fitter *fitter)
         RITZ_OWN(ritz_reduced) taken = {0}, made = {0};
         RITZ_OWN(ritz_dense) parts = {0};
 
-        assert_ok(ritz_fit_take(fitter, method, modes, true, &taken, &parts));
+        assert_ok(
+            ritz_fit_take(fitter, method, 0, modes, true, &taken, &parts));
         assert_ok(ritz_fit_body(fitter, method, 0, modes, &made));
         assert_same_model(fitter, &taken, &parts, &made);
         assert_options(method, &taken, &made);
@@ -131,7 +132,8 @@ static ritz_status narrow_once(ritz_fitter *fitter)
     RITZ_OWN(ritz_reduced) taken = {0};
     RITZ_OWN(ritz_dense) parts = {0};
 
-    return ritz_fit_take(fitter, &ritz_method_rubin, 2, true, &taken, &parts);
+    return ritz_fit_take(fitter, &ritz_method_rubin, 0, 2, true, &taken,
+                         &parts);
 }
 
 /* With fewer modes, bases of free modes follow from one basis of macneal-rubin
@@ -173,7 +175,7 @@ static void residual_modes_that_are_left_out_end_that(void **state)
         RITZ_OWN(ritz_dense) parts = {0};
 
         assert_ok(
-            ritz_fit_take(fitter, one[0], modes[k], true, &taken, &parts));
+            ritz_fit_take(fitter, one[0], 0, modes[k], true, &taken, &parts));
         assert_ok(ritz_fit_body(fitter, one[0], 0, modes[k], &made));
         assert_same_model(fitter, &taken, &parts, &made);
         assert_true(fitter->family[0].exact);
@@ -214,7 +216,7 @@ static void the_last_basis_of_a_method_is_kept(void **state)
     assert_int_equal(fitter->num_families, 1);
     assert_true(fitter->family[0].exact);
     T = fitter->family[0].whole.T.val;
-    assert_ok(ritz_fit_take(fitter, one[0], 1, true, &taken, &parts));
+    assert_ok(ritz_fit_take(fitter, one[0], 0, 1, true, &taken, &parts));
     assert_ptr_equal(fitter->family[0].whole.T.val, T);
     assert_ok(ritz_fit_body(fitter, one[0], 0, 1, &made));
     assert_memory_equal(taken.K.val, made.K.val,
@@ -241,7 +243,7 @@ static void more_modes_than_the_basis_has_make_a_larger_one(void **state)
         RITZ_OWN(ritz_dense) parts = {0};
 
         assert_ok(
-            ritz_fit_take(fitter, nested[0], modes, false, &taken, &parts));
+            ritz_fit_take(fitter, nested[0], 0, modes, false, &taken, &parts));
         assert_null(taken.T.val);
         assert_true(fitter->family[0].modes >= modes);
         if (modes == 0)
@@ -261,8 +263,8 @@ static int64_t take_in_turn(ritz_fitter *fitter)
         RITZ_OWN(ritz_reduced) taken = {0};
         RITZ_OWN(ritz_dense) parts = {0};
 
-        assert_ok(
-            ritz_fit_take(fitter, nested[served[k]], 3, false, &taken, &parts));
+        assert_ok(ritz_fit_take(fitter, nested[served[k]], 0, 3, false, &taken,
+                                &parts));
     }
     assert_int_equal(fitter->num_families, 3);
     for (int k = 0; k < 3; k++)
@@ -327,7 +329,7 @@ static void errors_without_a_basis_are_those_with_it(void **state)
     open_truss(false, &truss);
     assert_ok(ritz_fitter_new(&truss, &request, &fitter));
     reference = fitter->place[0].reference;
-    assert_ok(ritz_fit_take(fitter, nested[0], 4, true, &taken, &parts));
+    assert_ok(ritz_fit_take(fitter, nested[0], 0, 4, true, &taken, &parts));
     assert_ok(ritz_reference_measure(reference,
                                      ritz_model_of_reduced(&taken, NULL),
                                      &request.tolerance, 0, &with));
@@ -359,7 +361,7 @@ static void measures_without_a_limit_can_be_left_out(void **state)
     (void)state;
     open_truss(false, &truss);
     assert_ok(ritz_fitter_new(&truss, &request, &fitter));
-    assert_ok(ritz_fit_take(fitter, nested[0], 4, false, &taken, &parts));
+    assert_ok(ritz_fit_take(fitter, nested[0], 0, 4, false, &taken, &parts));
     for (int k = 0; k < 3; k++) {
         ritz_verify_request limits = RITZ_VERIFY_NONE;
         RITZ_OWN(ritz_measures) all = {0}, some = {0};
@@ -392,7 +394,7 @@ static ritz_status search_once(const ritz_component *truss)
 
     request.num_random = 0;
     RITZ_CHECK(ritz_fitter_new(truss, &request, &fitter));
-    return ritz_fit_take(fitter, nested[0], 2, true, &taken, &parts);
+    return ritz_fit_take(fitter, nested[0], 0, 2, true, &taken, &parts);
 }
 
 static void reducing_by_a_kept_basis_survives_every_allocation(void **state)

@@ -80,7 +80,7 @@ static void a_cut_of_another_scene_is_refused(void **state)
     assert_ok(ritz_fitter_try(a.fitter, one[0], modes, &a.whole));
     a.whole.columns = 1;
     a.whole.left_out = 100;
-    assert_fails(ritz_fit_make_bodies(a.fitter, &a.whole, &body),
+    assert_fails(ritz_fit_make_bodies(a.fitter, &a.whole, true, &body),
                  RITZ_ERR_ARGUMENT, "no cut of it has 1 columns");
 }
 
