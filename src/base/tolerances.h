@@ -581,6 +581,10 @@
 #define RITZ_PROPORTIONAL_RANK 1e-12
 /* Steps of a scan by which its end may lie beyond the last one. */
 #define RITZ_RANGE_STEPS 1e-9
+/* Where a damper holds a mode by more than this times what the mode resists
+   without it, the response that few dampers leave would lose four digits: the
+   whole system is solved. */
+#define RITZ_DAMPER_CANCELS 1e4
 /* A coupled modal system with a worse reciprocal condition is on a pole. */
 #define RITZ_COUPLED_RCOND 1e-16
 

@@ -49,22 +49,30 @@ static ritz_status assign_poles(const ritz_poles *poles,
                                 const ritz_spectrum *spectrum, int64_t *of)
 {
     RITZ_OWN_ARRAY bool *taken = NULL;
+    RITZ_OWN(ritz_dense) share = {0};
 
     RITZ_CHECK_NEW(taken, spectrum->count);
+    RITZ_CHECK(ritz_dense_new(poles->count, spectrum->count, &share));
+    for (int64_t j = 0; j < spectrum->count; j++)
+        for (int64_t k = 0; k < poles->count; k++)
+            ritz_dense_col(&share, j)[k] = share_of(spectrum, k, j);
     for (int64_t k = 0; k < poles->count; k++)
         of[k] = -1;
     for (int64_t t = poles->num_rigid; t < poles->count; t++) {
         double best = 0.0;
         int64_t mode = -1, pole = -1;
 
-        for (int64_t j = 0; j < spectrum->count; j++)
+        for (int64_t j = 0; j < spectrum->count; j++) {
+            const double *part = ritz_dense_col(&share, j);
+
             for (int64_t k = poles->num_rigid; k < poles->count && !taken[j];
                  k++)
-                if (of[k] < 0 && share_of(spectrum, k, j) > best) {
-                    best = share_of(spectrum, k, j);
+                if (part[k] > best && of[k] < 0) {
+                    best = part[k];
                     mode = k;
                     pole = j;
                 }
+        }
         if (mode < 0)
             break;
         of[mode] = pole;

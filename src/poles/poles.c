@@ -63,9 +63,9 @@ static int factor_coupled(bool skew, int m, double _Complex *Z,
                                  rcond);
 }
 
-static ritz_status solve_coupled(const ritz_poles *poles, bool transposed,
-                                 const ritz_dense *loads, double hertz,
-                                 double _Complex *q)
+static ritz_status solve_whole(const ritz_poles *poles, bool transposed,
+                               const ritz_dense *loads, double hertz,
+                               double _Complex *q)
 {
     int64_t m = poles->count + poles->massless;
     int64_t inputs = loads->ncol;
@@ -97,6 +97,18 @@ static ritz_status solve_coupled(const ritz_poles *poles, bool transposed,
     for (int64_t k = 0; k < m * inputs; k++)
         q[k] *= s[k % m];
     return RITZ_OK;
+}
+
+/* D of few dampers is symmetric, and Z with it. */
+static ritz_status solve_coupled(const ritz_poles *poles, bool transposed,
+                                 const ritz_dense *loads, double hertz,
+                                 double _Complex *q)
+{
+    bool solved = false;
+
+    if (poles->L.ncol > 0)
+        RITZ_CHECK(ritz_few_dampers_solve(poles, loads, hertz, &solved, q));
+    return solved ? RITZ_OK : solve_whole(poles, transposed, loads, hertz, q);
 }
 
 static bool couples_modes(const ritz_dense *A)
@@ -133,6 +145,8 @@ static ritz_status add_matrices(const ritz_dense *D, const ritz_dense *K4,
     } else if (has_k4) {
         RITZ_CHECK(ritz_dense_new(poles->count, poles->count, &poles->D));
     }
+    if (poles->coupled && !poles->skew && !has_k4)
+        RITZ_CHECK(ritz_few_dampers(D, &poles->L));
     if (has_k4) {
         poles->coupled = true;
         RITZ_CHECK(ritz_dense_copy(K4, &poles->K4));
@@ -322,6 +336,7 @@ void ritz_poles_free(ritz_poles *poles)
     RITZ_FREE(poles->lambda, poles->rate, poles->q);
     ritz_dense_free(&poles->D);
     ritz_dense_free(&poles->K4);
+    ritz_dense_free(&poles->L);
     ritz_io_free(&poles->io);
     ritz_residual_free(&poles->rest);
     *poles = (ritz_poles){0};

@@ -62,6 +62,8 @@ typedef struct ritz_poles {
     bool skew;          /* D is not symmetric */
     ritz_dense D;       /* count x count, with `rate` on its diagonal, or {0} */
     ritz_dense K4;      /* count x count, or {0} */
+    ritz_dense L;       /* D - L L' is diagonal, L of few columns; {0}: there is
+                           no such L, or K4 */
     ritz_io io;         /* for the modes */
     ritz_residual rest; /* response of motions without mass; {0}: none */
     double _Complex *q; /* count x num_inputs, to work in: one thread */
@@ -79,6 +81,26 @@ typedef struct ritz_poles {
 ritz_status ritz_poles_solve(const ritz_poles *poles, bool transposed,
                              const ritz_dense *loads, double hertz,
                              double _Complex *q);
+
+/**
+ * L of few columns for which D - L L' is rounding.
+ *
+ * @param[in]  D    m x m, symmetric
+ * @param[out] out  m x p, p at most m / 3; {0}: there is no such L
+ * @cost   O(m^2 p)
+ */
+ritz_status ritz_few_dampers(const ritz_dense *D, ritz_dense *out);
+
+/**
+ * ritz_poles_solve by L of the poles.
+ *
+ * @param[out] solved  false: the frequency is so near to that of a mode without
+ *                     its dampers that too many digits would cancel
+ * @cost   O(m p (p + inputs))
+ */
+ritz_status ritz_few_dampers_solve(const ritz_poles *poles,
+                                   const ritz_dense *loads, double hertz,
+                                   bool *solved, double _Complex *q);
 
 /** The refusal of a frequency that is a pole, 0 Hz if @p rigid. */
 ritz_status ritz_refuse_pole(bool rigid, double hertz);
