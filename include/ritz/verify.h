@@ -218,9 +218,10 @@ enum {
  * @param[in] request  copied
  * @return RITZ_ERR_ARGUMENT if the band is invalid
  * @cost   the modes up to three times the band; with damping ratios all modes
- *         of up to 2000 dofs, and some factorisations of larger models; a
- *         factorisation for each frequency where dampers couple modes of a
- *         model that is not small
+ *         of up to 2000 dofs, and some factorisations of larger models; where
+ *         dampers couple modes of a model that is not small, a projection of
+ *         its responses or, where rounding of K dominates them at the start of
+ *         the band, a factorisation for each frequency
  */
 ritz_status ritz_reference_new(const ritz_component *full,
                                const ritz_reference_request *request,
@@ -258,8 +259,8 @@ ritz_status ritz_reference_parts(const ritz_reference *reference,
  * shapes are compared by @p parts, which has as many columns as T.
  *
  * @param[in] parts  by ritz_reference_parts; NULL: as ritz_reference_measure
- * @cost   does not grow with the size of the full model, unless dampers couple
- *         its modes: then each of its response points may take a factor
+ * @cost   does not grow with the size of the full model, unless each of its
+ *         responses takes a factor: see ritz_reference_new
  */
 ritz_status ritz_reference_measure_parts(const ritz_reference *reference,
                                          ritz_model reduced,
@@ -273,8 +274,8 @@ ritz_status ritz_reference_measure_parts(const ritz_reference *reference,
 int64_t ritz_reference_modes(const ritz_reference *reference, int64_t *rigid);
 
 /**
- * Whether each frequency takes a factor of the full model: dampers couple modes
- * and not all of them are known.
+ * Whether responses of the full model need more than its modes: dampers couple
+ * modes, and not all of them are known.
  */
 bool ritz_reference_factors(const ritz_reference *reference);
 

@@ -139,36 +139,43 @@ bool ritz_reference_factors(const ritz_reference *reference)
            reference->poles.count < reference->component->num_dofs;
 }
 
-/*
- * Response of a component whose damping needs a factorisation of the full
- * matrices at each point. If ratios and matrices act together, the damping
- * matrix is full, and a factorisation at each point would take hours; the
- * krylov engine needs only a few.
- */
-static ritz_status respond_by_factors(const ritz_reference *reference,
-                                      const ritz_grid *grid, ritz_response *out)
+/* Whether rounding of K, which the krylov engine leaves out, dominates responses
+   nowhere in the band. */
+static bool is_unrounded(const ritz_reference *reference)
 {
-    const bool full =
-        ritz_ratios_act_on_all(reference->component, &reference->damping);
-    const ritz_response_request request = {
-        .model =
-            ritz_model_of_component(reference->component, &reference->damping),
-        .from_hz = grid->from_hz,
-        .to_hz = grid->to_hz,
-        .up_to_hz = reference->modes_hz,
-        .tolerance = RITZ_REFERENCE_TOLERANCE};
-    RITZ_OWN(ritz_responder) *responder = NULL;
+    const double *band = reference->band_hz;
 
-    RITZ_CHECK(ritz_responder_or_direct(full ? &ritz_response_engine_krylov
-                                             : &ritz_response_engine_direct,
-                                        &request, &responder));
-    return ritz_responder_sample(responder, grid, out);
+    return reference->rules_hz <= fmax(band[0], RITZ_BAND_START * band[1]);
 }
 
 /*
  * Modes and the static response of the rest do not give the effect of a local
- * damper, through which the rest moves too: then each point takes a factor.
+ * damper, through which the rest moves too. The krylov engine takes some factors
+ * in all, the direct one a factor for each point. If ratios and matrices act
+ * together, the damping matrix is full, and each of these factors would take
+ * minutes.
  */
+ritz_status ritz_reference_prepare(ritz_reference *reference)
+{
+    const ritz_response_request request = {
+        .model =
+            ritz_model_of_component(reference->component, &reference->damping),
+        .from_hz = ritz_reference_start(reference),
+        .to_hz = reference->band_hz[1],
+        .up_to_hz = reference->modes_hz,
+        .tolerance = RITZ_REFERENCE_TOLERANCE};
+
+    const bool full =
+        ritz_ratios_act_on_all(reference->component, &reference->damping);
+
+    if (!ritz_reference_factors(reference))
+        return RITZ_OK;
+    return ritz_responder_or_direct(full || is_unrounded(reference)
+                                        ? &ritz_response_engine_krylov
+                                        : &ritz_response_engine_direct,
+                                    &request, &reference->responder);
+}
+
 ritz_status ritz_reference_respond(const ritz_reference *reference,
                                    ritz_reference_sweep *s)
 {
@@ -180,8 +187,8 @@ ritz_status ritz_reference_respond(const ritz_reference *reference,
     RITZ_OWN(ritz_response) direct = {0};
 
     s->values = poles->io.num_inputs * poles->io.num_outputs;
-    if (ritz_reference_factors(reference)) {
-        RITZ_CHECK(respond_by_factors(reference, &grid, &direct));
+    if (reference->responder) {
+        RITZ_CHECK(ritz_responder_sample(reference->responder, &grid, &direct));
         RITZ_MOVE(s->full, direct.H);
     } else {
         RITZ_CHECK_NEW(s->full, s->count * s->values);

@@ -61,6 +61,9 @@ struct ritz_reference {
     ritz_damped damped;
     ritz_participation part;
     ritz_dense gain;
+    ritz_responder *responder; /* of the component, where modes and the static
+                                  response of the rest do not give responses;
+                                  NULL: they do, or there are none */
     ritz_reference_sweep own, random;
 };
 
@@ -119,6 +122,9 @@ ritz_status ritz_reference_observe(ritz_reference *reference);
  * between them.
  */
 ritz_status ritz_sides_match(ritz_sides *sides);
+
+/** Make `responder` if it is needed: one for all sweeps of the band. */
+ritz_status ritz_reference_prepare(ritz_reference *reference);
 
 /** The full model at the points of a sweep, which has its hertz. */
 ritz_status ritz_reference_respond(const ritz_reference *reference,

@@ -128,6 +128,7 @@ static ritz_status open_sweeps(const ritz_reference_request *request,
     if (r->poles.io.num_inputs == 0 || r->poles.io.num_outputs == 0 ||
         !(band[1] > band[0]))
         return RITZ_OK;
+    RITZ_CHECK_IN("full model", ritz_reference_prepare(r));
     RITZ_CHECK(
         ritz_sweep_points(r, &r->poles, &r->damped, EVEN_POINTS, &r->own));
     RITZ_CHECK_IN("full model", ritz_reference_respond(r, &r->own));
@@ -220,6 +221,7 @@ void ritz_reference_free(ritz_reference **reference)
     ritz_dense_free(&r->gain);
     ritz_sweep_free(&r->own);
     ritz_sweep_free(&r->random);
+    ritz_responder_free(&r->responder);
     free(r);
     *reference = NULL;
 }
