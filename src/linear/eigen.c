@@ -307,9 +307,8 @@ static double norm_of(double t, const ritz_dense *B, ritz_dense *A, int64_t j)
     return cblas_dnrm2(n, a, 1);
 }
 
-/* |K x - lambda M x| / ||K||x| + |lambda||M||x||, || taken entry by entry. */
-static ritz_status find_residuals(const ritz_dense *K, const ritz_dense *M,
-                                  ritz_pairs *pairs)
+ritz_status ritz_eigen_residuals(const ritz_dense *K, const ritz_dense *M,
+                                 ritz_pairs *pairs)
 {
     const ritz_dense *const matrix[] = {K, M};
     RITZ_OWN(ritz_dense_pair) gap = {0};
@@ -317,6 +316,8 @@ static ritz_status find_residuals(const ritz_dense *K, const ritz_dense *M,
     RITZ_OWN(ritz_dense) A = {0};
     RITZ_OWN(ritz_dense) X = {0};
 
+    if (pairs->Phi.ncol == 0 || !isnan(pairs->residual[0]))
+        return RITZ_OK;
     RITZ_CHECK(ritz_dense_abs(&pairs->Phi, &X));
     for (int k = 0; k < 2; k++) {
         RITZ_CHECK(ritz_dense_abs(matrix[k], &A));
@@ -427,8 +428,8 @@ static ritz_status solve_pencil(const ritz_dense *K, const ritz_dense *M,
     return RITZ_OK;
 }
 
-ritz_status ritz_eigen_dense(const ritz_dense *K, const ritz_dense *M,
-                             ritz_pairs *out)
+ritz_status ritz_eigen_unchecked(const ritz_dense *K, const ritz_dense *M,
+                                 ritz_pairs *out)
 {
     RITZ_OWN(ritz_pairs) pairs = {.proven_to = HUGE_VAL};
     int64_t n = K->nrow;
@@ -441,7 +442,8 @@ ritz_status ritz_eigen_dense(const ritz_dense *K, const ritz_dense *M,
     } else {
         RITZ_CHECK(solve_pencil(K, M, pairs.lambda, &pairs.Phi));
         ritz_dense_orient(&pairs.Phi);
-        RITZ_CHECK(find_residuals(K, M, &pairs));
+        for (int64_t k = 0; k < n; k++)
+            pairs.residual[k] = nan("");
     }
     n = pairs.Phi.ncol;
     pairs.num_rigid = ritz_eigen_rigid(
@@ -451,12 +453,23 @@ ritz_status ritz_eigen_dense(const ritz_dense *K, const ritz_dense *M,
     return RITZ_OK;
 }
 
+ritz_status ritz_eigen_dense(const ritz_dense *K, const ritz_dense *M,
+                             ritz_pairs *out)
+{
+    RITZ_OWN(ritz_pairs) pairs = {0};
+
+    RITZ_CHECK(ritz_eigen_unchecked(K, M, &pairs));
+    RITZ_CHECK(ritz_eigen_residuals(K, M, &pairs));
+    RITZ_MOVE(*out, pairs);
+    return RITZ_OK;
+}
+
 ritz_status ritz_general_symmetric(const ritz_dense *A, ritz_pairs *out)
 {
     RITZ_OWN(ritz_dense) unit = {0};
 
     RITZ_CHECK(ritz_dense_identity(A->nrow, &unit));
-    return ritz_eigen_dense(A, &unit, out);
+    return ritz_eigen_unchecked(A, &unit, out);
 }
 
 /*

@@ -14,7 +14,8 @@ enum {
     MEDIUM = 4000, /* dofs: LAPACK where a quarter of all modes is wanted */
 };
 
-/* Every mode, so that none can be missing; the requested ones are kept. */
+/* Every mode, so that none can be missing; the requested ones are kept, and have
+   their residuals computed. */
 static ritz_status by_lapack(const ritz_sparse *K, const ritz_sparse *M,
                              const ritz_span *span, ritz_pairs *out)
 {
@@ -25,7 +26,7 @@ static ritz_status by_lapack(const ritz_sparse *K, const ritz_sparse *M,
 
     RITZ_CHECK(ritz_sparse_dense(K, &K_d));
     RITZ_CHECK(ritz_sparse_dense(M, &M_d));
-    RITZ_CHECK(ritz_eigen_dense(&K_d, &M_d, &P));
+    RITZ_CHECK(ritz_eigen_unchecked(&K_d, &M_d, &P));
     if (span->modes < 0)
         limit = ritz_eigen_lambda(span->up_to_hz) * (1.0 + RITZ_SPAN_ROUNDING);
     end = ritz_pairs_wanted(&P, span, limit);
@@ -33,6 +34,7 @@ static ritz_status by_lapack(const ritz_sparse *K, const ritz_sparse *M,
         P.proven_to =
             fmax(limit, ritz_pairs_between(&P, end, RITZ_COUNT_PLACE));
     ritz_pairs_truncate(&P, end);
+    RITZ_CHECK(ritz_eigen_residuals(&K_d, &M_d, &P));
     RITZ_MOVE(*out, P);
     return RITZ_OK;
 }

@@ -155,7 +155,19 @@ bool ritz_general_unit(int64_t n, double *x);
 /** Frobenius norm. */
 double ritz_general_size(const ritz_dense *A);
 
-/** Eigenpairs of a symmetric A, vectors of length one: see ritz_eigen_dense. */
+/**
+ * As ritz_eigen_dense, without residuals, which take four products of n x n
+ * matrices: they are NaN, or 0 where K and M are those of modal coordinates.
+ */
+ritz_status ritz_eigen_unchecked(const ritz_dense *K, const ritz_dense *M,
+                                 ritz_pairs *out);
+
+/** The residuals that ritz_eigen_unchecked left out, of the pairs that are kept:
+ * |K x - lambda M x| / ||K||x| + |lambda||M||x||, || taken entry by entry. */
+ritz_status ritz_eigen_residuals(const ritz_dense *K, const ritz_dense *M,
+                                 ritz_pairs *pairs);
+
+/** Eigenpairs of a symmetric A, vectors of length one: see ritz_eigen_unchecked. */
 ritz_status ritz_general_symmetric(const ritz_dense *A, ritz_pairs *out);
 
 /** to(row.., col..) = sign A, or sign A'. */

@@ -1,5 +1,7 @@
 #include "testing.h"
 
+#include "linear/general.h"
+
 #include <ritz/matrix.h>
 
 #include <float.h>
@@ -74,6 +76,30 @@ static void modal_coordinates_are_taken_as_they_are(void **)
     assert_memory_equal(P.lambda, lambda, sizeof lambda);
     assert_memory_equal(P.Phi.val, Phi, sizeof Phi);
     assert_true(P.residual[0] == 0.0);
+}
+
+/* Residuals of the modes that are kept are those of all modes, to the rounding of
+   products; without them there are none, and not 0. */
+static void residuals_are_computed_of_the_modes_that_are_kept(void **)
+{
+    enum { N = 3, KEPT = 2 };
+    double stiffness[] = {2.0, -1.0, 0, -1.0, 2.0, -1.0, 0, -1.0, 1.0};
+    double mass[] = {1.0, 0, 0, 0, 1.3, 0, 0, 0, 0.7};
+    const ritz_dense K = {N, N, stiffness}, M = {N, N, mass};
+    const ritz_span lowest = {.modes = KEPT};
+    RITZ_OWN(ritz_sparse) K_s = {0}, M_s = {0};
+    RITZ_OWN(ritz_pairs) all = {0}, some = {0}, none = {0};
+
+    assert_ok(ritz_sparse_from_dense(&K, &K_s));
+    assert_ok(ritz_sparse_from_dense(&M, &M_s));
+    assert_ok(ritz_eigen_dense(&K, &M, &all));
+    assert_ok(ritz_eigen_sparse(&K_s, &M_s, &lowest, &some));
+    assert_ok(ritz_eigen_unchecked(&K, &M, &none));
+    assert_int_equal(some.Phi.ncol, KEPT);
+    for (int64_t k = 0; k < KEPT; k++) {
+        assert_near(some.residual[k], all.residual[k], 8.0 * DBL_EPSILON);
+        assert_true(isnan(none.residual[k]));
+    }
 }
 
 /* An entry off the diagonal is not overlooked in either matrix, nor is a dof
@@ -166,6 +192,7 @@ static void a_mass_that_is_not_definite_is_refused(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(modal_coordinates_are_taken_as_they_are),
     cmocka_unit_test(nearly_modal_coordinates_are_solved_as_any_other),
+    cmocka_unit_test(residuals_are_computed_of_the_modes_that_are_kept),
     cmocka_unit_test(low_modes_of_dense_pencils_keep_their_digits),
     cmocka_unit_test(heavy_and_light_masses_keep_the_lowest_mode),
     cmocka_unit_test(only_a_gap_makes_a_mode_rigid),
