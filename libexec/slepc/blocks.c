@@ -1,11 +1,9 @@
 #include "blocks.h"
 
 #include "base/alloc.h"
-#include "base/tolerances.h"
 #include "linear/general.h"
 #include "ranks.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -139,237 +137,17 @@ ritz_status block_polish(const rank_pencil *p, Mat X, double *lambda)
     ranks_expect(MatGetSize(X, NULL, &columns));
     block_multiply(p->M, X, &MX);
     ranks_expect(MatDuplicate(X, MAT_DO_NOT_COPY_VALUES, &Y));
-    rank_pencil_solve(p, MX, Y);
-    block_multiply(p->M, Y, &MY);
-    status = project_pencil(Y, MX, MY, lambda, X);
+    status = rank_pencil_solve(p, MX, Y);
+    if (status == RITZ_OK) {
+        block_multiply(p->M, Y, &MY);
+        status = project_pencil(Y, MX, MY, lambda, X);
+    }
     ranks_expect(MatDestroy(&MX));
     ranks_expect(MatDestroy(&MY));
     ranks_expect(MatDestroy(&Y));
     for (PetscInt j = 0; j < columns; j++)
         lambda[j] += p->sigma;
     return status;
-}
-
-/* --- residuals ------------------------------------------------------------ */
-
-/* A := |A|, entry by entry. */
-static void take_magnitudes(Mat A)
-{
-    Mat parts[2] = {NULL, NULL};
-    const PetscInt *columns = NULL;
-
-    ranks_expect(MatMPIAIJGetSeqAIJ(A, &parts[0], &parts[1], &columns));
-    for (int k = 0; k < 2; k++) {
-        MatInfo info;
-        double *value = NULL;
-
-        ranks_expect(MatGetInfo(parts[k], MAT_LOCAL, &info));
-        ranks_expect(MatSeqAIJGetArray(parts[k], &value));
-        for (int64_t p = 0; p < (int64_t)info.nz_used; p++)
-            value[p] = fabs(value[p]);
-        ranks_expect(MatSeqAIJRestoreArray(parts[k], &value));
-    }
-}
-
-/* AX := A X and sizes := |A||X|, new blocks. */
-static void multiply_both(Mat A, Mat X, Mat *AX, Mat *sizes)
-{
-    Mat magnitude = NULL;
-    Mat lengths = NULL;
-    ritz_dense x;
-
-    block_multiply(A, X, AX);
-    ranks_expect(MatDuplicate(A, MAT_COPY_VALUES, &magnitude));
-    ranks_expect(MatDuplicate(X, MAT_COPY_VALUES, &lengths));
-    take_magnitudes(magnitude);
-    x = block_take(lengths);
-    for (int64_t i = 0; i < x.nrow * x.ncol; i++)
-        x.val[i] = fabs(x.val[i]);
-    block_return(lengths, &x);
-    block_multiply(magnitude, lengths, sizes);
-    ranks_expect(MatDestroy(&magnitude));
-    ranks_expect(MatDestroy(&lengths));
-}
-
-enum { GAP, SIZE, ENERGY, SUMS };
-
-/* Sums over the rows of this rank of |K x - lambda M x|^2,
-   | |K||x| + |lambda||M||x| |^2 and |x|'|K||x|, from of[] = K X, |K||X|, M X,
-   |M||X|. Those of column j begin at sum[SUMS j]. */
-static void sum_rows(const ritz_dense *x, const ritz_dense of[4],
-                     const double *lambda, double *sum)
-{
-    for (int64_t j = 0; j < x->ncol; j++)
-        for (int64_t i = 0; i < x->nrow; i++) {
-            const int64_t at = i + j * x->nrow;
-            const double gap = of[0].val[at] - lambda[j] * of[2].val[at];
-            const double size = of[1].val[at] + fabs(lambda[j]) * of[3].val[at];
-
-            sum[SUMS * j + GAP] += gap * gap;
-            sum[SUMS * j + SIZE] += size * size;
-            sum[SUMS * j + ENERGY] += fabs(x->val[at]) * of[1].val[at];
-        }
-}
-
-ritz_status block_assess(const rank_pencil *p, Mat X, ritz_pairs *P,
-                         double *worst)
-{
-    Mat products[4] = {NULL, NULL, NULL, NULL};
-    ritz_dense of[4];
-    ritz_dense x;
-    RITZ_OWN_ARRAY double *sum = NULL;
-    double scale = 0.0;
-
-    RANKS_CHECK_NEW(sum, SUMS * P->Phi.ncol);
-    multiply_both(p->K, X, &products[0], &products[1]);
-    multiply_both(p->M, X, &products[2], &products[3]);
-    x = block_take(X);
-    for (int k = 0; k < 4; k++)
-        of[k] = block_take(products[k]);
-    sum_rows(&x, of, P->lambda, sum);
-    for (int k = 0; k < 4; k++) {
-        block_return(products[k], &of[k]);
-        ranks_expect(MatDestroy(&products[k]));
-    }
-    block_return(X, &x);
-    ranks_sum(sum, SUMS * P->Phi.ncol);
-    *worst = 0.0;
-    for (int64_t j = 0; j < P->Phi.ncol; j++) {
-        const double *s = sum + SUMS * j;
-
-        P->residual[j] = s[SIZE] == 0.0 ? 0.0 : sqrt(s[GAP] / s[SIZE]);
-        if (!isnan(*worst) && !(P->residual[j] <= *worst))
-            *worst = P->residual[j];
-        scale = fmax(scale, s[ENERGY]);
-    }
-    P->num_rigid = ritz_eigen_rigid(P->Phi.ncol, P->lambda, scale);
-    return RITZ_OK;
-}
-
-/* --- quotients ------------------------------------------------------------ */
-
-/* The rows of a distributed matrix in this rank, in compressed form: either the
-   part with the columns of this rank, or that with columns of other ranks, for
-   which entries of x must be fetched. */
-typedef struct local_rows {
-    Mat part;
-    PetscInt rows;
-    const PetscInt *start, *column;
-    const double *value;
-} local_rows;
-
-static void take_rows(Mat part, local_rows *out)
-{
-    PetscBool done = PETSC_FALSE;
-
-    out->part = part;
-    ranks_expect(MatGetRowIJ(part, 0, PETSC_FALSE, PETSC_FALSE, &out->rows,
-                             &out->start, &out->column, &done));
-    ranks_expect(MatSeqAIJGetArrayRead(part, &out->value));
-}
-
-static void return_rows(local_rows *r)
-{
-    PetscBool done = PETSC_FALSE;
-
-    ranks_expect(MatSeqAIJRestoreArrayRead(r->part, &r->value));
-    ranks_expect(MatRestoreRowIJ(r->part, 0, PETSC_FALSE, PETSC_FALSE, &r->rows,
-                                 &r->start, &r->column, &done));
-}
-
-/* Add x'A y and |x|'|A||y| of these rows, the former with products and sums of
-   64 bits instead of 53. */
-static void sum_energy(const local_rows *r, const double *x, const double *y,
-                       long double *energy, double *size)
-{
-    for (PetscInt i = 0; i < r->rows; i++) {
-        long double sum = 0.0L;
-
-        for (PetscInt k = r->start[i]; k < r->start[i + 1]; k++) {
-            const long double part =
-                (long double)r->value[k] * (long double)y[r->column[k]];
-
-            sum += part;
-            *size += fabs((double)part * x[i]);
-        }
-        *energy += (long double)x[i] * sum;
-    }
-}
-
-/* out[0] + out[1] := x'A x and out[2] := |x|'|A||x|, summed over all ranks. */
-static void find_energy(const local_rows part[2], Vec x, VecScatter fetch,
-                        Vec others, double out[3])
-{
-    const double *own = NULL;
-    const double *far = NULL;
-    long double energy = 0.0L;
-
-    out[2] = 0.0;
-    ranks_expect(
-        VecScatterBegin(fetch, x, others, INSERT_VALUES, SCATTER_FORWARD));
-    ranks_expect(
-        VecScatterEnd(fetch, x, others, INSERT_VALUES, SCATTER_FORWARD));
-    ranks_expect(VecGetArrayRead(x, &own));
-    ranks_expect(VecGetArrayRead(others, &far));
-    sum_energy(&part[0], own, own, &energy, &out[2]);
-    sum_energy(&part[1], own, far, &energy, &out[2]);
-    ranks_expect(VecRestoreArrayRead(others, &far));
-    ranks_expect(VecRestoreArrayRead(x, &own));
-    out[0] = (double)energy;
-    out[1] = (double)(energy - (long double)out[0]);
-    ranks_sum(out, 3);
-}
-
-/* lambda := x'K x of the flexible modes, the lowest first, until one has not
-   lost digits. x'M x = 1. */
-static void sharpen_columns(const local_rows part[2], Mat X, VecScatter fetch,
-                            Vec others, ritz_pairs *P)
-{
-    bool lost = true;
-
-    for (int64_t j = P->num_rigid; lost && j < P->Phi.ncol; j++) {
-        double energy[3];
-        Vec x = NULL;
-
-        ranks_expect(MatDenseGetColumnVecRead(X, (PetscInt)j, &x));
-        find_energy(part, x, fetch, others, energy);
-        ranks_expect(MatDenseRestoreColumnVecRead(X, (PetscInt)j, &x));
-        lost = energy[2] * DBL_EPSILON > RITZ_DIGITS_LOST * P->lambda[j];
-        if (lost)
-            P->lambda[j] = energy[0] + energy[1];
-        if (j > 0)
-            P->lambda[j] = fmax(P->lambda[j], P->lambda[j - 1]);
-    }
-}
-
-ritz_status block_sharpen(const rank_pencil *p, Mat X, ritz_pairs *P)
-{
-    Mat parts[2] = {NULL, NULL};
-    const PetscInt *columns = NULL;
-    local_rows part[2];
-    VecScatter fetch = NULL;
-    PetscInt count = 0;
-    Vec x = NULL;
-    Vec others = NULL;
-    IS from = NULL;
-
-    ranks_expect(MatMPIAIJGetSeqAIJ(p->K, &parts[0], &parts[1], &columns));
-    ranks_expect(MatGetSize(parts[1], NULL, &count));
-    ranks_expect(MatCreateVecs(p->K, &x, NULL));
-    ranks_expect(VecCreateSeq(PETSC_COMM_SELF, count, &others));
-    ranks_expect(ISCreateGeneral(PETSC_COMM_SELF, count, columns,
-                                 PETSC_COPY_VALUES, &from));
-    ranks_expect(VecScatterCreate(x, from, others, NULL, &fetch));
-    for (int k = 0; k < 2; k++)
-        take_rows(parts[k], &part[k]);
-    sharpen_columns(part, X, fetch, others, P);
-    for (int k = 0; k < 2; k++)
-        return_rows(&part[k]);
-    ranks_expect(VecScatterDestroy(&fetch));
-    ranks_expect(ISDestroy(&from));
-    ranks_expect(VecDestroy(&others));
-    ranks_expect(VecDestroy(&x));
-    return RITZ_OK;
 }
 
 /* --- M-orthogonality --------------------------------------------------- */

@@ -31,29 +31,6 @@ void block_multiply(Mat A, Mat X, Mat *out);
  */
 ritz_status block_polish(const rank_pencil *p, Mat X, double *lambda);
 
-/**
- * Residuals | K x - lambda M x | / | |K||x| + |lambda||M||x| |, and the number
- * of rigid-body modes. Collective.
- *
- * @param[in]     X      vectors
- * @param[in,out] P      lambda and Phi.ncol are read; residual and num_rigid
- *                       are set
- * @param[out]    worst  the largest residual; NaN if one is NaN
- */
-ritz_status block_assess(const rank_pencil *p, Mat X, ritz_pairs *P,
-                         double *worst);
-
-/**
- * Compute eigenvalues that have lost digits again, by x'K x / x'M x with sums
- * in extended precision. The rounding of the factor, which depends on the
- * number of ranks, changes low eigenvalues, as of thin plates, in proportion;
- * it changes the quotient only by its square. Collective.
- *
- * @param[in]     X  M-orthonormal, by ascending eigenvalue
- * @param[in,out] P  lambda is changed, num_rigid is read
- */
-ritz_status block_sharpen(const rank_pencil *p, Mat X, ritz_pairs *P);
-
 /** Distribute @p count columns from rank 0 to a new block, whose rows are
  * distributed as those of A. Rank 0 calls @p give for each column, which sets
  * all rows of @p x. Collective. */

@@ -189,7 +189,7 @@ static ritz_status respond_interior(rank_work *w)
     RITZ_CHECK(block_scatter(w->rows.K, w->task->num_loads, give_load,
                              w->target, &w->F));
     ranks_expect(MatDuplicate(w->F, MAT_DO_NOT_COPY_VALUES, &w->X));
-    rank_pencil_solve(&w->pencil, w->F, w->X);
+    RITZ_CHECK(rank_pencil_solve(&w->pencil, w->F, w->X));
     RITZ_CHECK(block_product(w->F, w->X, &R));
     for (int64_t j = 0; j < R.ncol; j++)
         w->least[j] = part * ritz_dense_col(&R, j)[j];
@@ -289,7 +289,7 @@ static ritz_status find_constraint_modes(rank_work *w)
     if (!w->rows.load)
         return RITZ_OK;
     ranks_expect(MatDuplicate(w->rows.load, MAT_DO_NOT_COPY_VALUES, &w->Psi));
-    rank_pencil_solve(&w->pencil, w->rows.load, w->Psi);
+    RITZ_CHECK(rank_pencil_solve(&w->pencil, w->rows.load, w->Psi));
     ranks_expect(MatDestroy(&w->rows.load));
     return RITZ_OK;
 }
@@ -323,7 +323,7 @@ static ritz_status solve_interior(rank_work *w)
     if (status == RITZ_ERR_SINGULAR && w->task->held)
         status = explain_singular(w);
     RITZ_CHECK_IN(w->task->held ? "interior stiffness" : what, status);
-    RITZ_CHECK(find_constraint_modes(w));
+    RITZ_CHECK_IN("constraint modes", find_constraint_modes(w));
     RITZ_CHECK_IN("static vectors", respond_interior(w));
     if (w->task->span.modes != 0 || !w->task->held)
         RITZ_CHECK_IN(what, find_modes(w, limit, goal));

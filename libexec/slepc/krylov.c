@@ -16,25 +16,28 @@ static PetscErrorCode apply_factor(PC pc, Vec x, Vec y)
     void *context = NULL;
 
     PetscCall(PCShellGetContext(pc, &context));
-    rank_pencil_solve_vector(context, x, y);
+    if (rank_pencil_solve_vector(context, x, y) != RITZ_OK)
+        SETERRQ(PETSC_COMM_WORLD, PETSC_ERR_LIB, "%s", ritz_error_message());
     return 0;
 }
 
 /* A start vector that does not depend on the number of ranks. It is in the
    range of (K - sigma M)^-1 M, which is not the whole space if M is
    singular. */
-static void set_start(EPS eps, const rank_pencil *p)
+static ritz_status set_start(EPS eps, const rank_pencil *p)
 {
+    ritz_status status = RITZ_OK;
     Vec start = NULL;
     Vec noise = NULL;
 
     ranks_expect(MatCreateVecs(p->M, &noise, &start));
     rows_fill(noise, 0);
     ranks_expect(MatMult(p->M, noise, start));
-    rank_pencil_solve_vector(p, start, noise);
+    status = rank_pencil_solve_vector(p, start, noise);
     ranks_expect(EPSSetInitialSpace(eps, 1, &noise));
     ranks_expect(VecDestroy(&start));
     ranks_expect(VecDestroy(&noise));
+    return status;
 }
 
 /* Shift-and-invert with the factor that exists, so that SLEPc neither forms nor
@@ -56,7 +59,7 @@ static void set_transformation(EPS eps, rank_pencil *p)
     ranks_expect(PCShellSetApply(pc, apply_factor));
 }
 
-static void set_up(EPS eps, rank_pencil *p, int64_t ask, int64_t room)
+static ritz_status set_up(EPS eps, rank_pencil *p, int64_t ask, int64_t room)
 {
     ranks_expect(EPSSetOperators(eps, p->K, p->M));
     ranks_expect(EPSSetProblemType(eps, EPS_GHEP));
@@ -69,8 +72,9 @@ static void set_up(EPS eps, rank_pencil *p, int64_t ask, int64_t room)
     /* block_polish() does what purification would, for all vectors at once */
     ranks_expect(EPSSetPurify(eps, PETSC_FALSE));
     set_transformation(eps, p);
-    set_start(eps, p);
+    RITZ_CHECK(set_start(eps, p));
     ranks_expect(EPSSetFromOptions(eps));
+    return RITZ_OK;
 }
 
 static void take_pairs(EPS eps, int64_t count, Mat X, double *lambda)
@@ -89,17 +93,20 @@ static void take_pairs(EPS eps, int64_t count, Mat X, double *lambda)
 ritz_status krylov_lowest(rank_pencil *p, int64_t ask, int64_t room, Mat *X,
                           double **lambda, int64_t *found)
 {
+    ritz_status status = RITZ_OK;
     EPS eps = NULL;
     PetscInt converged = 0;
 
     RANKS_CHECK_NEW(*lambda, ask);
     ranks_expect(EPSCreate(PETSC_COMM_WORLD, &eps));
-    set_up(eps, p, ask, room);
-    ranks_expect(EPSSolve(eps));
-    ranks_expect(EPSGetConverged(eps, &converged));
+    status = set_up(eps, p, ask, room);
+    if (status == RITZ_OK) {
+        ranks_expect(EPSSolve(eps));
+        ranks_expect(EPSGetConverged(eps, &converged));
+    }
     *found = converged < ask ? converged : ask;
     block_new(p->K, *found, X);
     take_pairs(eps, *found, *X, *lambda);
     ranks_expect(EPSDestroy(&eps));
-    return RITZ_OK;
+    return status;
 }

@@ -187,7 +187,7 @@ static ritz_status begin(rank_lanczos *z)
     }
     multiply_mass(z);
     ranks_expect(MatCopy(z->MW, z->Y, SAME_NONZERO_PATTERN));
-    rank_pencil_solve(z->p, z->Y, z->W);
+    RITZ_CHECK(rank_pencil_solve(z->p, z->Y, z->W));
     multiply_mass(z);
     RITZ_CHECK(orthonormalise_block(z));
     append_block(z, 0);
@@ -202,7 +202,7 @@ static ritz_status extend(rank_lanczos *z, double *h)
 
     if (z->count > 0)
         keep_coupling(z, z->count);
-    rank_pencil_solve(z->p, z->Y, z->W);
+    RITZ_CHECK(rank_pencil_solve(z->p, z->Y, z->W));
     /* the second pass changes W by rounding alone, so that M W is kept */
     for (int pass = 0; pass < 2; pass++) {
         multiply_mass(z);

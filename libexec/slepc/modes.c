@@ -1,5 +1,6 @@
 #include "modes.h"
 
+#include "assess.h"
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "blocks.h"
@@ -180,19 +181,24 @@ static ritz_status find_alone(const rank_pencil *p, const ritz_span *span,
 static ritz_status refine_pairs(rank_search *s)
 {
     ritz_pairs *P = &s->found.pairs;
+    RITZ_OWN(assessor) a = {0};
+    RITZ_OWN_ARRAY double *energy = NULL;
+    Mat X = s->found.X;
     double worst = HUGE_VAL;
 
     RANKS_CHECK_NEW(P->residual, P->Phi.ncol);
+    RANKS_CHECK_NEW(energy, P->Phi.ncol);
+    RITZ_CHECK(assessor_new(s->p->K, s->p->M, &a));
     if (s->by_blocks)
-        RITZ_CHECK(block_assess(s->p, s->found.X, P, &worst));
+        RITZ_CHECK(assessor_residuals(&a, X, P, energy, &worst));
     for (int k = 0; k < POLISHES && !(worst <= RITZ_EIGEN_RESIDUAL); k++) {
-        RITZ_CHECK(block_polish(s->p, s->found.X, P->lambda));
-        RITZ_CHECK(block_assess(s->p, s->found.X, P, &worst));
+        RITZ_CHECK(block_polish(s->p, X, P->lambda));
+        RITZ_CHECK(assessor_residuals(&a, X, P, energy, &worst));
     }
     RITZ_REFUSE_IF(!(worst <= RITZ_EIGEN_RESIDUAL), RITZ_ERR_CONVERGENCE,
                    "a residual of %.1e stays above %.0e", worst,
                    RITZ_EIGEN_RESIDUAL);
-    return block_sharpen(s->p, s->found.X, P);
+    return assessor_sharpen(&a, X, energy, P);
 }
 
 /* Number of Krylov vectors for so many pairs. */

@@ -7,15 +7,15 @@
 #ifndef RITZ_LIBEXEC_SLEPC_PENCIL_H
 #define RITZ_LIBEXEC_SLEPC_PENCIL_H
 
+#include "factor.h"
+
 #include <ritz/matrix.h>
 
 #include <petscmat.h>
 
 typedef struct rank_pencil {
-    Mat K, M; /* borrowed */
-    Mat A;    /* K - sigma M, with the union of both patterns */
-    Mat F;    /* its factor */
-    int room; /* percent of memory beyond what the analysis of MUMPS predicts */
+    Mat K, M;       /* borrowed */
+    rank_factor *F; /* of K - sigma M; NULL: none was made */
     double sigma;
     int64_t negative; /* eigenvalues below sigma, of the last factor made */
     double typical;   /* median of K_jj / M_jj, 1 if there is none */
@@ -25,20 +25,18 @@ typedef struct rank_pencil {
 /** Set `typical` and `heavy` from K and M; nothing is factored. Collective. */
 ritz_status rank_pencil_new(Mat K, Mat M, rank_pencil *out);
 
-/**
- * Factor K - sigma M. Collective.
- *
- * @return RITZ_ERR_SINGULAR if MUMPS finds a pivot that is zero or rounding;
- *         RITZ_ERR_MEMORY; RITZ_ERR_CONVERGENCE for any other failure of MUMPS
- */
+/** Factor K - sigma M. Collective.
+ * @return as rank_factor_new() and rank_factor_make() */
 ritz_status rank_pencil_factor(rank_pencil *p, double sigma);
 
 /** X := (K - sigma M)^-1 B for blocks with the rows of K; X is not B.
- * Collective. */
-void rank_pencil_solve(const rank_pencil *p, Mat B, Mat X);
+ * Collective.
+ * @return as rank_factor_solve() */
+ritz_status rank_pencil_solve(const rank_pencil *p, Mat B, Mat X);
 
-/** x := (K - sigma M)^-1 b. Collective. */
-void rank_pencil_solve_vector(const rank_pencil *p, Vec b, Vec x);
+/** x := (K - sigma M)^-1 b. Collective.
+ * @return as rank_factor_solve() */
+ritz_status rank_pencil_solve_vector(const rank_pencil *p, Vec b, Vec x);
 
 void rank_pencil_free(rank_pencil *p);
 

@@ -313,7 +313,8 @@ ritz_status rows_read(const rows_frame *frame, rows *out)
     RITZ_OWN(rows) r = {.own = count_interior(frame)};
 
     r.interior = ranks_total(r.own);
-    RITZ_REFUSE_IF(r.interior > INT32_MAX, RITZ_ERR_ARGUMENT,
+    /* eight vectors are exchanged at a time, as one of eight numbers a row */
+    RITZ_REFUSE_IF(r.interior > INT32_MAX / 8, RITZ_ERR_ARGUMENT,
                    "%" PRId64 " rows are more than PETSc can count here",
                    r.interior);
     RITZ_CHECK(read_stiffness(frame, &r));

@@ -1,0 +1,350 @@
+#include "assess.h"
+
+#include "base/alloc.h"
+#include "base/tolerances.h"
+#include "blocks.h"
+#include "linear/tiles.h"
+#include "ranks.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+enum {
+    WIDTH = RITZ_TILE, /* vectors at a time */
+    CHUNK = 32,        /* rows of K X and M X that are held at a time */
+};
+
+void assessor_free(assessor *a)
+{
+    ranks_expect(VecScatterDestroy(&a->fetch));
+    ranks_expect(VecDestroy(&a->mine));
+    ranks_expect(VecDestroy(&a->others));
+    ritz_sparse_free(&a->K);
+    ritz_sparse_free(&a->M);
+    RITZ_FREE(a->x);
+    *a = (assessor){0};
+}
+
+/* --- rows ----------------------------------------------------------------- */
+
+/* The rows of a distributed matrix in this rank, in compressed form: the part
+   with the columns of this rank, and the part with those of other ranks, whose
+   column k is column far[k] of the matrix; far ascends. */
+typedef struct local_part {
+    Mat of;
+    PetscInt rows;
+    const PetscInt *start, *column;
+    const double *value;
+} local_part;
+
+typedef struct local_rows {
+    local_part part[2];
+    PetscInt num_far;
+    const PetscInt *far;
+} local_rows;
+
+static void take_rows(Mat A, local_rows *out)
+{
+    Mat parts[2] = {NULL, NULL};
+
+    ranks_expect(MatMPIAIJGetSeqAIJ(A, &parts[0], &parts[1], &out->far));
+    ranks_expect(MatGetSize(parts[1], NULL, &out->num_far));
+    for (int k = 0; k < 2; k++) {
+        local_part *p = &out->part[k];
+        PetscBool done = PETSC_FALSE;
+
+        p->of = parts[k];
+        ranks_expect(MatGetRowIJ(p->of, 0, PETSC_FALSE, PETSC_FALSE, &p->rows,
+                                 &p->start, &p->column, &done));
+        ranks_expect(MatSeqAIJGetArrayRead(p->of, &p->value));
+    }
+}
+
+static void return_rows(local_rows *r)
+{
+    for (int k = 0; k < 2; k++) {
+        local_part *p = &r->part[k];
+        PetscBool done = PETSC_FALSE;
+
+        ranks_expect(MatSeqAIJRestoreArrayRead(p->of, &p->value));
+        ranks_expect(MatRestoreRowIJ(p->of, 0, PETSC_FALSE, PETSC_FALSE,
+                                     &p->rows, &p->start, &p->column, &done));
+    }
+}
+
+/* The columns of other ranks that K or M has, ascending. place[0][k] is the
+   place of column k of K's part among them, place[1][k] of M's. */
+static int64_t unite_far(const local_rows both[2], PetscInt *far,
+                         int64_t *const place[2])
+{
+    PetscInt at[2] = {0, 0};
+    int64_t count = 0;
+
+    while (at[0] < both[0].num_far || at[1] < both[1].num_far) {
+        PetscInt least = PETSC_MAX_INT;
+
+        for (int k = 0; k < 2; k++)
+            if (at[k] < both[k].num_far && both[k].far[at[k]] < least)
+                least = both[k].far[at[k]];
+        for (int k = 0; k < 2; k++)
+            if (at[k] < both[k].num_far && both[k].far[at[k]] == least)
+                place[k][at[k]++] = count;
+        far[count++] = least;
+    }
+    return count;
+}
+
+/* A := the rows as columns, with rows `own` first and then those at `place`. */
+static ritz_status copy_rows(const local_rows *r, int64_t own, int64_t all,
+                             const int64_t *place, ritz_sparse *A)
+{
+    const local_part *p = r->part;
+    const int64_t entries = (int64_t)p[0].start[own] + p[1].start[own];
+    int64_t at = 0;
+
+    RITZ_CHECK(ritz_sparse_new(all, own, entries, A));
+    for (int64_t j = 0; j < own; j++) {
+        for (PetscInt k = p[0].start[j]; k < p[0].start[j + 1]; k++) {
+            A->rowind[at] = p[0].column[k];
+            A->val[at++] = p[0].value[k];
+        }
+        for (PetscInt k = p[1].start[j]; k < p[1].start[j + 1]; k++) {
+            A->rowind[at] = own + place[p[1].column[k]];
+            A->val[at++] = p[1].value[k];
+        }
+        A->colptr[j + 1] = at;
+    }
+    return RITZ_OK;
+}
+
+/* Copy the rows of both matrices. @param[out] far  rows of other ranks; room for
+   those of both matrices */
+static ritz_status copy_both(const local_rows both[2], PetscInt *far,
+                             assessor *a)
+{
+    RITZ_OWN_ARRAY int64_t *of_K = NULL, *of_M = NULL;
+    ritz_sparse *const A[2] = {&a->K, &a->M};
+    int64_t *place[2];
+
+    RITZ_CHECK_NEW(of_K, both[0].num_far);
+    RITZ_CHECK_NEW(of_M, both[1].num_far);
+    place[0] = of_K;
+    place[1] = of_M;
+    a->far = unite_far(both, far, place);
+    for (int k = 0; k < 2; k++)
+        RITZ_CHECK(
+            copy_rows(&both[k], a->own, a->own + a->far, place[k], A[k]));
+    RITZ_CHECK_NEW(a->x, (a->own + a->far) * WIDTH);
+    return RITZ_OK;
+}
+
+/* Plan which rows of eight numbers are fetched from other ranks. */
+static void plan_fetch(const PetscInt *far, assessor *a)
+{
+    IS from = NULL;
+
+    ranks_expect(VecCreateMPIWithArray(PETSC_COMM_WORLD, WIDTH,
+                                       (PetscInt)(WIDTH * a->own), PETSC_DECIDE,
+                                       a->x, &a->mine));
+    ranks_expect(VecCreateSeqWithArray(PETSC_COMM_SELF, WIDTH,
+                                       (PetscInt)(WIDTH * a->far),
+                                       a->x + WIDTH * a->own, &a->others));
+    ranks_expect(ISCreateBlock(PETSC_COMM_SELF, WIDTH, (PetscInt)a->far, far,
+                               PETSC_COPY_VALUES, &from));
+    ranks_expect(VecScatterCreate(a->mine, from, a->others, NULL, &a->fetch));
+    ranks_expect(ISDestroy(&from));
+}
+
+ritz_status assessor_new(Mat K, Mat M, assessor *out)
+{
+    RITZ_OWN(assessor) a = {0};
+    RITZ_OWN_ARRAY PetscInt *far = NULL;
+    local_rows both[2];
+    ritz_status status = RITZ_OK;
+
+    take_rows(K, &both[0]);
+    take_rows(M, &both[1]);
+    a.own = both[0].part[0].rows;
+    far = ritz_zalloc((int64_t)both[0].num_far + both[1].num_far, sizeof *far);
+    status = far ? copy_both(both, far, &a) : RITZ_ERR_MEMORY;
+    return_rows(&both[1]);
+    return_rows(&both[0]);
+    RANKS_CHECK(status);
+    plan_fetch(far, &a);
+    RITZ_MOVE(*out, a);
+    return RITZ_OK;
+}
+
+/* Put columns [first, first + count) of X, at most eight, into a->x, with zeros
+   for the rest, and fetch the rows of other ranks. Collective. */
+static void load_columns(const assessor *a, const ritz_dense *X, int64_t first,
+                         int64_t count)
+{
+    for (int64_t i = 0; i < a->own; i++)
+        for (int64_t c = 0; c < WIDTH; c++)
+            a->x[i * WIDTH + c] =
+                c < count ? X->val[i + (first + c) * X->nrow] : 0.0;
+    ranks_expect(VecScatterBegin(a->fetch, a->mine, a->others, INSERT_VALUES,
+                                 SCATTER_FORWARD));
+    ranks_expect(VecScatterEnd(a->fetch, a->mine, a->others, INSERT_VALUES,
+                               SCATTER_FORWARD));
+}
+
+/* Columns from `first` on that are treated at a time. */
+static int64_t count_next(int64_t first, int64_t end)
+{
+    return end - first < WIDTH ? end - first : WIDTH;
+}
+
+/* --- residuals ------------------------------------------------------------ */
+
+/* Sums over the rows of this rank, for each of eight pairs:
+     gap     |K x - lambda M x|^2
+     size    | |K||x| + |lambda||M||x| |^2
+     energy  |x|'|K||x| */
+enum { GAP, SIZE, ENERGY, SUMS };
+
+typedef double sums[SUMS][WIDTH];
+
+static void add_row(const double *x, const double *K[2], const double *M[2],
+                    const double *lambda, sums s)
+{
+    for (int c = 0; c < WIDTH; c++) {
+        const double gap = K[0][c] - lambda[c] * M[0][c];
+        const double size = K[1][c] + fabs(lambda[c]) * M[1][c];
+
+        s[GAP][c] += gap * gap;
+        s[SIZE][c] += size * size;
+        s[ENERGY][c] += fabs(x[c]) * K[1][c];
+    }
+}
+
+static void add_rows(const assessor *a, const double lambda[WIDTH], sums s)
+{
+    const ritz_tiles *tiles = ritz_tiles_here();
+
+    for (int64_t r = 0; r < a->own; r += CHUNK) {
+        const int64_t end = r + CHUNK < a->own ? r + CHUNK : a->own;
+        double Kx[2][CHUNK * WIDTH], Mx[2][CHUNK * WIDTH];
+
+        tiles->terms(r, end, &a->K, a->x, Kx[0], Kx[1]);
+        tiles->terms(r, end, &a->M, a->x, Mx[0], Mx[1]);
+        for (int64_t i = 0; i < (end - r) * WIDTH; i += WIDTH)
+            add_row(a->x + r * WIDTH + i,
+                    (const double *[]){Kx[0] + i, Kx[1] + i},
+                    (const double *[]){Mx[0] + i, Mx[1] + i}, lambda, s);
+    }
+}
+
+/* total[SUMS j + k] := sum k of pair j, over the rows of all ranks. */
+static void sum_pairs(const assessor *a, const ritz_dense *X,
+                      const ritz_pairs *P, double *total)
+{
+    const int64_t pairs = P->Phi.ncol;
+
+    for (int64_t first = 0; first < pairs; first += WIDTH) {
+        const int64_t count = count_next(first, pairs);
+        double lambda[WIDTH] = {0.0};
+        sums s = {0};
+
+        load_columns(a, X, first, count);
+        memcpy(lambda, P->lambda + first, (size_t)count * sizeof *lambda);
+        add_rows(a, lambda, s);
+        for (int64_t c = 0; c < count; c++)
+            for (int k = 0; k < SUMS; k++)
+                total[SUMS * (first + c) + k] = s[k][c];
+    }
+    ranks_sum(total, SUMS * pairs);
+}
+
+ritz_status assessor_residuals(const assessor *a, Mat X, ritz_pairs *P,
+                               double *energy, double *worst)
+{
+    RITZ_OWN_ARRAY double *total = NULL;
+    double scale = 0.0;
+    ritz_dense x;
+
+    RANKS_CHECK_NEW(total, SUMS * P->Phi.ncol);
+    x = block_take(X);
+    sum_pairs(a, &x, P, total);
+    block_return(X, &x);
+    *worst = 0.0;
+    for (int64_t j = 0; j < P->Phi.ncol; j++) {
+        const double *s = total + SUMS * j;
+
+        P->residual[j] = s[SIZE] == 0.0 ? 0.0 : sqrt(s[GAP] / s[SIZE]);
+        if (!isnan(*worst) && !(P->residual[j] <= *worst))
+            *worst = P->residual[j];
+        energy[j] = s[ENERGY];
+        scale = fmax(scale, energy[j]);
+    }
+    P->num_rigid = ritz_eigen_rigid(P->Phi.ncol, P->lambda, scale);
+    return RITZ_OK;
+}
+
+/* --- quotients ------------------------------------------------------------ */
+
+/* One more than the last of the flexible pairs, the lowest first, that have lost
+   digits. */
+static int64_t end_of_lost(const ritz_pairs *P, const double *energy)
+{
+    int64_t j = P->num_rigid;
+
+    while (j < P->Phi.ncol &&
+           energy[j] * DBL_EPSILON > RITZ_DIGITS_LOST * P->lambda[j])
+        j++;
+    return j;
+}
+
+/* quotient[2 j] + quotient[2 j + 1] := x'K x over the rows of this rank, of
+   `count` columns; K x with twice the digits, the sum of its products with x
+   with 64 bits. Y and L are working memory as large as a->x. */
+static void find_quotients(const assessor *a, int64_t count, double *Y,
+                           double *L, double *quotient)
+{
+    const int64_t size = (a->own + a->far) * WIDTH;
+    long double sum[WIDTH] = {0.0L};
+
+    memset(Y, 0, (size_t)size * sizeof *Y);
+    memset(L, 0, (size_t)size * sizeof *L);
+    ritz_tiles_here()->twofold(&a->K, a->x, Y, L);
+    for (int64_t i = 0; i < size; i += WIDTH)
+        for (int64_t c = 0; c < count; c++)
+            sum[c] += (long double)a->x[i + c] *
+                      ((long double)Y[i + c] + (long double)L[i + c]);
+    for (int64_t c = 0; c < count; c++) {
+        quotient[2 * c] = (double)sum[c];
+        quotient[2 * c + 1] = (double)(sum[c] - (long double)quotient[2 * c]);
+    }
+}
+
+/* x'M x = 1, so that x'K x is the quotient. */
+ritz_status assessor_sharpen(const assessor *a, Mat X, const double *energy,
+                             ritz_pairs *P)
+{
+    const int64_t first = P->num_rigid;
+    const int64_t end = end_of_lost(P, energy);
+    RITZ_OWN_ARRAY double *Y = NULL, *L = NULL, *quotient = NULL;
+    ritz_dense x;
+
+    Y = ritz_zalloc((a->own + a->far) * WIDTH, sizeof *Y);
+    L = ritz_zalloc((a->own + a->far) * WIDTH, sizeof *L);
+    quotient = ritz_zalloc(2 * (end - first), sizeof *quotient);
+    RANKS_CHECK(Y && L && quotient ? RITZ_OK : RITZ_ERR_MEMORY);
+    x = block_take(X);
+    for (int64_t j = first; j < end; j += WIDTH) {
+        load_columns(a, &x, j, count_next(j, end));
+        find_quotients(a, count_next(j, end), Y, L, quotient + 2 * (j - first));
+    }
+    block_return(X, &x);
+    ranks_sum(quotient, 2 * (end - first));
+    for (int64_t j = first; j < P->Phi.ncol; j++) {
+        if (j < end)
+            P->lambda[j] =
+                quotient[2 * (j - first)] + quotient[2 * (j - first) + 1];
+        if (j > 0)
+            P->lambda[j] = fmax(P->lambda[j], P->lambda[j - 1]);
+    }
+    return RITZ_OK;
+}
