@@ -14,11 +14,12 @@ ranks() { number=$1 && shift && mpirun -n "$number" ritz-basis "$@"; }
 reduce() { number=$1 && shift && mpirun -n "$number" ritz-reduce "$@"; }
 
 # Threads of a rank are its share of the cores, also where SLURM states the
-# number of ranks for several machines. A script that prints the number of
-# threads takes the place of the program.
+# number of ranks for several machines, and Open MPI looks for networks only if
+# ranks are on other machines, or if the user says so. A script that prints the
+# number of threads and Open MPI's choice takes the place of the program.
 mkdir -p tool/bin tool/libexec/ritz
 cp "$bin/ritz-basis" tool/bin
-printf '#!/bin/sh\necho "threads=$OMP_NUM_THREADS."\n' \
+printf '#!/bin/sh\necho "threads=$OMP_NUM_THREADS. pml=$OMPI_MCA_pml."\n' \
     >tool/libexec/ritz/ritz-basis-slepc
 chmod +x tool/libexec/ritz/ritz-basis-slepc
 for tasks in 9999 '9999(x2)' '9999(x2),3' 9999,3; do
@@ -26,6 +27,12 @@ for tasks in 9999 '9999(x2)' '9999(x2),3' 9999,3; do
         SLURM_TASKS_PER_NODE="$tasks" tool/bin/ritz-basis --engine slepc
 done
 expect 0 threads= tool/bin/ritz-basis craig-bampton --engine=slepc m.h5
+for case in '2 2 ob1' '4 2 ' '2 2 ucx OMPI_MCA_pml=ucx'; do
+    # shellcheck disable=SC2086 # words
+    set -- $case
+    expect 0 "pml=${3:-}." env -u OMPI_MCA_pml OMPI_COMM_WORLD_SIZE=$1 \
+        OMPI_COMM_WORLD_LOCAL_SIZE=$2 ${4:-} tool/bin/ritz-basis --engine slepc
+done
 
 # Built without PETSc, ritz-basis names the packages that it needs.
 if [ ! -x "$program" ]; then
