@@ -282,8 +282,8 @@ static ritz_status open_scene(const ritz_scene *scene, ritz_fitter *f)
     RITZ_REFUSE_IF(!isnan(limits->limit[RITZ_MEASURE_MAC]) &&
                        io->num_inputs == 0 && io->num_outputs == 0,
                    RITZ_ERR_ARGUMENT,
-                   "a tolerance of 'mac' needs inputs or outputs: of a scene "
-                   "it is that of what they see");
+                   "a tolerance of 'mac' needs inputs or outputs: modes of a "
+                   "scene are compared by participations in these");
     f->largest = f->request.largest > 0 ? f->request.largest : INT64_MAX;
     settle_limits(f->place[0].reference, limits);
     return RITZ_OK;
@@ -313,7 +313,7 @@ static ritz_status open_component(const ritz_component *component,
         ritz_component_attached(component, f->request.attach, &f->attached));
     ritz_monitor_step("full model", 0, 0);
     RITZ_CHECK(refer_place(&f->request, &f->place[0]));
-    if (component->dampers.count == 0) /* bases do not see them */
+    if (component->dampers.count == 0) /* bases are made without dampers */
         RITZ_CHECK(ritz_fit_estimator(f, component, &f->place[0]));
     f->largest = largest_order(f);
     settle_limits(f->place[0].reference, limits);
