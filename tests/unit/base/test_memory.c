@@ -64,7 +64,8 @@ static void a_factor_that_does_not_fit_is_refused(void **state)
     assert_null(F);
 }
 
-/* A count holds only a part of its factor, and that part counts. */
+/* A count holds only a part of its factor in memory; that part is compared with
+   the limit. */
 static void a_count_that_does_not_fit_is_refused(void **state)
 {
     RITZ_OWN(ritz_sparse) K = {0}, M = {0};
@@ -97,7 +98,8 @@ static ritz_status fail_to_relieve(void *of)
     return ritz_fail(RITZ_ERR_FILE, "no disk");
 }
 
-/* Only where a count does not fit; the counts are the same. */
+/* The relief is called only where a count does not fit, and counts are the same
+   after it. */
 static void a_count_that_does_not_fit_calls_for_relief(void **state)
 {
     RITZ_OWN(ritz_sparse) K = {0}, M = {0};

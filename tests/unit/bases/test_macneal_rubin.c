@@ -366,8 +366,8 @@ static void residual_modes_exist_for_approximate_modes(void **state)
                         1e-12 * ritz_dense_col_max(&basis.T, j));
 }
 
-/* Modes that the request knows are taken as they are: here with their signs
-   changed. They do if the mode above them is known too. */
+/* Modes that the request knows are copied, as their changed signs show here, but
+   only if the mode above them is known too. */
 static void known_modes_are_not_computed(void **state)
 {
     fixture *f = *state;

@@ -254,7 +254,7 @@ static void exact_bases_need_few_counts(void **)
     }
 }
 
-/* Estimate a basis of MODES unit vectors and modes of a chain. */
+/* Estimate the errors of a chain that is reduced to COLUMNS sines. */
 static void estimate_chain(const ritz_component *chain,
                            const ritz_estimate_request *request,
                            int64_t *num_factors, ritz_measures *found)
@@ -278,8 +278,8 @@ static void estimate_chain(const ritz_component *chain,
     ritz_estimator_free(&estimator);
 }
 
-/* Counts that known modes tell give the same bounds as factors do, and modes
-   that end within the band, or are not proven, give the same, too. */
+/* Bounds are the same whether modes are counted by a factor or from known modes,
+   all of them, or none beyond the third, or none proven: then factors count. */
 static void known_modes_are_counted_without_factors(void **)
 {
     enum { MASSES = 60, MODES = 30, BAND = 10 };

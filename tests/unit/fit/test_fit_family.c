@@ -80,8 +80,8 @@ static void assert_same_model(const ritz_fitter *fitter,
         assert_near(own.val[k], parts->val[k], 1e-12 * ritz_dense_max(parts));
 }
 
-/* The options are the same, but that no count proves the modes of a basis that
-   candidates share. */
+/* The options are the same, except for `count no` of a basis that candidates
+   share. */
 static void assert_options(const ritz_method *method, const ritz_reduced *taken,
                            const ritz_reduced *made)
 {
@@ -346,8 +346,8 @@ static void errors_without_a_basis_are_those_with_it(void **state)
     }
 }
 
-/* Where only measures with a limit are asked for, these and what costs nothing
-   are as without that restriction, and the others are left out. */
+/* If only measures with a limit are requested, these and the measures that cost
+   nothing have the same values as otherwise, and the others are left out. */
 static void measures_without_a_limit_can_be_left_out(void **state)
 {
     RITZ_OWN(ritz_component) truss = {0};

@@ -38,7 +38,7 @@ static void residual_matrix(const ritz_state_space *m, const ritz_dense *Z,
     ritz_dense_add(1.0, &BB, out);
 }
 
-/* Its norm over |B B'|, in the Frobenius norm. */
+/* |A W E' + E W A' + B B'| / |B B'|, W = Z Z', in the Frobenius norm. */
 static double residual_of(const ritz_state_space *m, const ritz_dense *Z)
 {
     RITZ_OWN(ritz_dense) R = {0}, BB = {0};
@@ -126,8 +126,8 @@ static void projected_values_are_those_of_dense_ones(void **)
     }
 }
 
-/* The residual that is stated, 1e-9 to 1e-4 here, is that of the equation, but
-   for the rounding of A W E', n eps |A| |W| / |B B'|. */
+/* The residual that is stated, for tolerances of 1e-8 to 1e-4, is that of the
+   equation up to the rounding of A W E', n eps |A| |W| / |B B'|. */
 static void the_residual_of_a_projection_is_measured(void **)
 {
     double largest = 0.0;

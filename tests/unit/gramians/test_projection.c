@@ -224,8 +224,9 @@ static double norm_of(const ritz_dense *S, ritz_dense *A)
     return sqrt(sum);
 }
 
-/* S'S of the norm of an equation: diag(M, K_s^-1) or diag(1, w_0^2) K_s^-1.
-   S = L' of M = L L', or L^-1 of K_s = L L'. */
+/* S of the norm |S R S'| of an equation: S'S = diag(M, K_s^-1) for
+   controllability, diag(K_s^-1, w_0^2 K_s^-1) for observability. Blocks of S are
+   L' of M = L L' and L^-1 of K_s = L L'. */
 static ritz_dense energy_norm(const ritz_low_rank_model *low, int side)
 {
     const int64_t n = low->n;
@@ -253,7 +254,7 @@ static ritz_dense energy_norm(const ritz_low_rank_model *low, int side)
     return S;
 }
 
-/* A, or A' of the other equation. */
+/* A for controllability, A' for observability. */
 static ritz_dense first_order(const ritz_low_rank_model *low, int side)
 {
     const int64_t n = low->n;
@@ -276,7 +277,8 @@ static ritz_dense first_order(const ritz_low_rank_model *low, int side)
     return A;
 }
 
-/* A Z (E Z)' + E Z (A Z)' + W W', relative to W W', from whole matrices. */
+/* Norm of A Z (E Z)' + E Z (A Z)' + W W' relative to that of W W', from whole
+   matrices; E is symmetric. */
 static double residual_of(const ritz_low_rank_model *low, int side,
                           const ritz_gramians *found)
 {
@@ -399,8 +401,8 @@ static void few_vectors_give_the_values_of_all_modes(void **state)
     assert_near(hankel_difference(&values, &exact), 0.0, 1e-10);
 }
 
-/* Most modes are damped beyond critical. Vectors of K^-1 M alone would have to
-   be nearly as many as the masses to reach them. */
+/* Most modes are damped beyond critical. Without shifts nearly as many vectors of
+   K^-1 M as there are masses would be needed to reach them. */
 static void shifts_reach_strongly_damped_modes(void **state)
 {
     double m[MANY], k[MANY];

@@ -97,8 +97,9 @@ static double distance_from_diagonal(const ritz_dense *G, const double *d)
 /*
  * Vectors that have converged to 1e-3 only: as they come from Rayleigh-Ritz,
  * they are orthonormal in M, and X'K X is diagonal up to rounding, eps times the
- * largest eigenvalue, 12, times the size of K^-1. Eigenvalues lie between exact
- * ones and their bounds; how many lie below the widest gap is known here.
+ * largest eigenvalue, 12, times the norm of K^-1. Exact eigenvalues lie between
+ * the lower bounds and the Ritz values; their number below the widest gap is
+ * known from the closed form.
  */
 static void rough_pairs_are_bounded(void **state)
 {

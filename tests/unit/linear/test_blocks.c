@@ -80,7 +80,8 @@ static void projections_are_sums_over_all_rows(void **state)
     }
 }
 
-/* Two blocks multiplied together are two blocks multiplied one by one. */
+/* Products of two blocks at once have the same bits as those of one block at a
+   time. */
 static void two_blocks_are_multiplied_as_one_by_one(void **state)
 {
     enum { V_BLOCKS = BLOCKS - 1, ALL = 2 * V_BLOCKS * SQUARE };

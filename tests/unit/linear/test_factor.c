@@ -61,8 +61,7 @@ static void chain_is_as_soft_as_its_springs_in_series(void **state)
                         (double)(i + 1), bound);
 }
 
-/* Units make no matrix singular: 1e-40 N/m beside 1 N/m. */
-/* Both solves err by the rounding of the chain, see above. */
+/* Both solves have the rounding errors of the chain, see above. */
 static void two_blocks_are_solved_as_one_by_one(void **state)
 {
     enum { SIZE = 90, BLOCK = 8 * SIZE };
@@ -83,6 +82,7 @@ static void two_blocks_are_solved_as_one_by_one(void **state)
         assert_near(x[i], y[i], bound);
 }
 
+/* Units make no matrix singular: 1e-40 N/m beside 1 N/m. */
 static void units_do_not_matter(void **state)
 {
     const int64_t at[] = {0, 1};

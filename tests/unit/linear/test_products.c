@@ -72,8 +72,8 @@ static void products_agree_for_all_threads_and_kernels(void **state)
     ritz_set_threads(1);
 }
 
-/* All kernels give the same bits, in which nothing of A X is lost: the terms of
-   a lattice with stiffnesses of 1/3 cancel to 1e-9 of themselves. */
+/* All kernels give the same bits, and A X is right to rounding of the result,
+   although terms of magnitude 12 in all cancel to 1/3 in most rows. */
 static void twofold_products_are_the_same_everywhere(void **state)
 {
     RITZ_OWN(ritz_sparse) K = {0}, M = {0}, A = {0};
@@ -107,7 +107,7 @@ static void twofold_products_are_the_same_everywhere(void **state)
             for (int64_t p = A.colptr[j]; p < A.colptr[j + 1]; p++)
                 y[A.rowind[p]] +=
                     (long double)A.val[p] * (long double)X.val[j + k * A.ncol];
-        for (int64_t i = 0; i < A.nrow; i++) /* 7 terms of 2 at most */
+        for (int64_t i = 0; i < A.nrow; i++) /* y too has been rounded */
             assert_near(first.val[i + k * A.nrow], (double)y[i],
                         14.0 * (double)LDBL_EPSILON +
                             DBL_EPSILON * fabs((double)y[i]));
@@ -279,8 +279,8 @@ static void submatrices_keep_the_given_order_of_rows(void **state)
     ritz_set_threads(1);
 }
 
-/* A count at an eigenvalue of several modes includes any of them, or fails and
-   leaves its result alone. */
+/* A count at an eigenvalue of several modes includes any number of these, or
+   fails and leaves its result unchanged. */
 static void count_at_eigenvalue(ritz_counter *counter, double lambda,
                                 int64_t least, int64_t most)
 {

@@ -14,8 +14,8 @@ static const double pi = 3.14159265358979323846;
  *     lambda_j = 4 sin^2 a_j,   x_ij = 2 / sqrt(2 n + 1) sin(2 i a_j),
  *     a_j = (2 j - 1) pi / (2 (2 n + 1)),   i, j = 1 .. n
  *
- * K and M are exact. The terms of x_1'K x_1 add up to 4, lambda_1 is
- * (pi / (2 n + 1))^2.
+ * K and M have no rounding errors. The magnitudes of the terms of x_1'K x_1 add
+ * up to 4, x_1'K x_1 itself is lambda_1, about (pi / (2 n + 1))^2.
  */
 enum { MASSES = 6000 };
 
@@ -115,7 +115,7 @@ static void long_chains_keep_their_digits(void **state)
     free_chain(&c);
 }
 
-/* Vectors that hold 1e-9 of each other, and eigenvalues off by as much. */
+/* Add 1e-9 of one vector to another, and 1e-9 of itself to each eigenvalue. */
 static void blur(ritz_pairs *P)
 {
     const int64_t n = P->Phi.nrow, count = P->Phi.ncol;

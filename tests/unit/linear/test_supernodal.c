@@ -33,9 +33,9 @@ static double solve_twice(const ritz_sparse *A, ritz_factor *F, int64_t columns)
     return worst;
 }
 
-/* The factor is read back before the next solve, with the same bits, also when
-   it is put aside twice. A folder in memory or none is refused, and the factor
-   can be used. */
+/* The factor is read back before the next solve, with the same bits, also if it
+   is written twice in a row. A folder in memory, or one that does not exist, is
+   refused, and the factor can still be used. */
 static void a_factor_can_be_in_a_file(void **state)
 {
     RITZ_OWN(ritz_sparse) K = {0}, M = {0};
@@ -150,7 +150,8 @@ static ritz_status order_alike(const ritz_sparse *A, const int64_t *expected)
     return RITZ_OK;
 }
 
-/* Order while a new store is lent, which is full then. */
+/* Order matrices of one pattern while a new store is lent: it then has one
+   order. */
 static ritz_status store_once(const ritz_sparse *A, const int64_t *expected)
 {
     RITZ_OWN(ritz_orders) *orders = NULL;
@@ -192,7 +193,7 @@ static void a_store_has_an_order_for_each_pattern(void **state)
             assert_ok(order_alike(&less, other));
             assert_int_equal(ritz_orders_count(orders), 2);
         }
-        assert_ok(store_once(&K, order)); /* this one is lent again after it */
+        assert_ok(store_once(&K, order)); /* `orders` is lent again after it */
         assert_ok(ritz_ordering_new(&M, &last));
         assert_int_equal(ritz_orders_count(orders), 3);
     }
