@@ -455,7 +455,7 @@ static int64_t place_of(int64_t kind, int64_t i)
     return i < corners + 2 * edges ? i + edges : i - edges;
 }
 
-/* A spring to the ground joins one grid and is nothing to be seen. */
+/* Springs to the ground, which have one grid, are not drawn. */
 static ritz_status take_cell(const ritz_card *card, const bulk_cell *cell,
                              int64_t *room, ritz_deck *out)
 {

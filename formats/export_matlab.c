@@ -252,7 +252,7 @@ static ritz_status put_columns(sheet *s, const ritz_columns *columns)
     return put_real(s, "hertz", columns->count, 1, columns->hertz);
 }
 
-/* What a reduced component has beside its matrices. */
+/* What a reduced component has in addition to its matrices. */
 static ritz_status put_reduced(sheet *s, const ritz_reduced *reduced)
 {
     const ritz_io *io = &reduced->io;

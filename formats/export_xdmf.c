@@ -89,7 +89,7 @@ static ritz_status write_heavy(hid_t file, const void *what)
     return RITZ_OK;
 }
 
-/* A reference to a data set of the file beside. */
+/* A reference to a data set of the HDF5 file that belongs to this one. */
 static void refer_to_set(FILE *file, const char *heavy, const char *type,
                          int64_t rows, int64_t columns, const char *name)
 {

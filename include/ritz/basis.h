@@ -157,8 +157,9 @@ typedef struct ritz_request {
        parts of them; NULL: they are kept */
     ritz_component *owned;
     /* the lowest modes of `component`, none of which is missing below
-       `proven_to`: methods of free modes take theirs, or rigid ones, from them
-       if there are enough; borrowed, NULL: none are known */
+       `proven_to`: methods with free-interface modes copy them, and krylov
+       methods copy the rigid-body modes, if there are enough; borrowed, NULL:
+       the method computes its modes */
     const ritz_pairs *known;
 } ritz_request;
 
@@ -351,8 +352,8 @@ ritz_status ritz_gramians_of_space(const ritz_state_space *model,
 /**
  * Gramians of a state space by an engine: `dense` as above; `low-rank`, by ADI
  * with sparse factors, for models whose poles, except those at 0, are all left
- * of the imaginary axis; `projection`, by the solution in the space of ADI's
- * columns, with a residual that is measured, for models of which E and
+ * of the imaginary axis; `projection`, by Galerkin's condition in the span of
+ * ADI's columns, with the residual of that solution, for models of which E and
  * -(A + A') are definite; `auto`, which takes `dense` for a dense model, and for
  * a sparse one `low-rank` or, where ADI does not converge and the model is
  * small enough, `dense`.
@@ -378,8 +379,8 @@ typedef struct ritz_gramians_request {
     int64_t most;      /* projection: limit of Krylov vectors; 0: as memory
                           allows */
     double tolerance;  /* low-rank: of the residual; 0: 1e-10; projection: of
-                          the error of Hankel values and of the residual; 0:
-                          1e-8 */
+                          the error of Hankel values and of both residuals;
+                          0: 1e-8 */
 } ritz_gramians_request;
 
 /**
@@ -388,15 +389,15 @@ typedef struct ritz_gramians_request {
  * projection if D is a M + b K, with or without discrete dampers, otherwise
  * low-rank.
  *
- * With low-rank, `residual` is the norm of a matrix whose rows and columns have
- * the units of energy, sqrt(K_ii) for displacements and 1/sqrt(M_ii) for forces.
- * With projection it is the Frobenius norm of L R L', where |L (u, f)|^2 is
- * u'M u + f'K_s^-1 f in the first equation, rows of displacements u and of
- * forces f; in the second, in which rows belong to displacements and to
- * velocities, f'K_s^-1 f + w_0^2 g'K_s^-1 g, w_0 the lowest angular frequency.
- * K_s = K + mu M, with mu = 0 unless the body is free, and then w_0^2. Z_c Z_c'
- * is thus the exact Gramian of white noise whose intensity differs from B B' by
- * that part of the energy of its static response.
+ * `residual` is a norm of S R S', R the residual of an equation, relative to
+ * that of its load. With low-rank, S is diagonal, so that squares of the rows of
+ * S R are energies: 1/sqrt(M_ii) for momenta, and for displacements sqrt(K_ii)
+ * (first equation) or for forces 1/sqrt(K_ii) (second); the norm is the 2-norm.
+ * With projection, S weights whole vectors, and the norm is that of Frobenius:
+ * |S (u, f)|^2 is u'M u + f'K_s^-1 f for displacements u and forces f in the
+ * first equation; in the second, f'K_s^-1 f + w_0^2 g'K_s^-1 g for the rows f of
+ * displacements and g of velocities. w_0 is the lowest angular frequency, and
+ * K_s = K + mu M, mu = w_0^2 for a free body and 0 for others.
  *
  * @return RITZ_ERR_ARGUMENT if it has no inputs or no outputs, or the engine
  *         does not fit it; RITZ_ERR_CONVERGENCE if the rank grows too large

@@ -439,16 +439,17 @@ typedef struct ritz_span {
  *
  * With an accuracy, and with RITZ_EIGEN_AMLS, residuals are not limited;
  * `engine` of the pairs states a bound of the errors of eigenvalues, and the
- * values are upper bounds. Small pencils are solved by LAPACK as without.
- * Slices take over from substructures, with the usual accuracy, where these are
- * of no use.
+ * values are upper bounds. Small pencils are always solved by LAPACK, to
+ * rounding. If substructures would be nearly as large as the model, or do not
+ * converge, spectrum slices find the pairs to rounding.
  *
  * @return RITZ_ERR_ARGUMENT if the span is not one, or if an accuracy is
- *         requested of an engine that knows none;
+ *         requested of an engine that finds eigenvalues to rounding only;
  *         RITZ_ERR_SINGULAR if K + M is singular (a mechanism without mass);
  *         RITZ_ERR_CONVERGENCE if a residual stays above its limit or the
  *         inertia count finds a mode that was missed
- * @cost   a factor, about 2k solves, one LDL' factor for the proof
+ * @cost   a factor, about 3 k solves in blocks of eight, one LDL' factor for the
+ *         proof
  */
 ritz_status ritz_eigen_sparse(const ritz_sparse *K, const ritz_sparse *M,
                               const ritz_span *span, ritz_pairs *out);
@@ -499,7 +500,8 @@ double ritz_eigen_lambda(double hertz);
 
 void ritz_pairs_free(ritz_pairs *pairs);
 
-/** Copy the first @p count pairs, of which no more than these are proven. */
+/** Copy the first @p count pairs. proven_to of the copy is at most the eigenvalue
+ * of the first pair that is not copied. */
 ritz_status ritz_pairs_copy(const ritz_pairs *from, int64_t count,
                             ritz_pairs *out);
 

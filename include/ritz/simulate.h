@@ -69,7 +69,8 @@ typedef struct ritz_integrator {
     const char *summary;
     const char *accuracy;    /* order in the step */
     const char *stability;   /* for which steps */
-    const char *dissipation; /* what it takes out beside the model's damping */
+    const char *dissipation; /* what it dissipates in addition to the damping
+                                of the model */
     const char *fails;
     const char *reference; /* key in docs/references.bib */
     bool takes_sparse;     /* full components, without modes */

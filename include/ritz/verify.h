@@ -208,8 +208,8 @@ typedef struct ritz_reference_request {
 enum {
     RITZ_AT_OTHER_POLES = 1, /* those of the reduced model */
     RITZ_AT_RANDOM = 2,      /* the random frequencies */
-    RITZ_ONLY_LIMITED = 4,   /* leave out responses and static gain if nothing
-                                that has a limit needs them */
+    RITZ_ONLY_LIMITED = 4,   /* leave out responses and static gain if no
+                                measure that has a limit needs them */
 };
 
 /**
@@ -312,8 +312,9 @@ typedef struct ritz_estimate_request {
                              basis */
     ritz_damping damping; /* of responses; none: no response is bounded */
     bool frequencies;     /* estimate frequencies only, no response */
-    /* modes of the full model, none of which is missing below `proven_to`: no
-       count is taken where they tell it; borrowed, NULL: not known */
+    /* modes of the full model, none of which is missing below `proven_to`:
+       where they show how many modes lie below a value, none are counted by a
+       factor; borrowed, NULL: not known */
     const ritz_pairs *modes;
 } ritz_estimate_request;
 

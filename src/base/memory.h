@@ -11,14 +11,15 @@
 int64_t ritz_memory_limit(void);
 
 /**
- * Return pages to the system in which all memory was freed. free() keeps them,
- * because the system takes time to clear pages that it gives out; call this
- * before a large array that will not fit into them.
+ * Return to the system the pages that hold only freed memory. free() keeps them,
+ * because the system takes time to clear the pages that it gives out. Call this
+ * before you allocate a large array that does not fit into freed memory.
  */
 void ritz_memory_return(void);
 
-/** Whether these bytes fit beside the memory in use, as ritz_memory_admit()
- * judges it. If they do not, memory that was freed is returned first. */
+/** Whether so many bytes and the memory in use are within the limit, by the rule
+ * of ritz_memory_admit(). If they are not, freed memory is returned to the
+ * system, and the memory in use is read once more. */
 bool ritz_memory_fits(int64_t bytes);
 
 /**

@@ -57,7 +57,7 @@ static ritz_status open_nameless(const char *what, int *out)
     return RITZ_OK;
 }
 
-/* Bytes of the next call, of those from `at` on. */
+/* How many of the bytes from `at` on the next call writes or reads. */
 static size_t size_of_chunk(size_t at, size_t bytes)
 {
     return bytes - at < CHUNK ? bytes - at : CHUNK;
@@ -122,7 +122,7 @@ ritz_status ritz_spill_fetch(ritz_spill *spill, void *pages)
                                   : strerror(errno)); /* NOLINT: as above */
         if (count < 0)
             continue;
-        /* memory need not hold the same bytes as a file, too */
+        /* the system need not keep a copy of the file in memory */
         (void)posix_fadvise(spill->file, (off_t)at, count, POSIX_FADV_DONTNEED);
         at += (size_t)count;
     }

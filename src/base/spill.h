@@ -1,5 +1,5 @@
-/* Memory whose contents are in a file for a while, so that something else has
- * room. */
+/* Memory whose contents are in a file for a while, so that something else can
+ * use it. */
 #ifndef RITZ_BASE_SPILL_H
 #define RITZ_BASE_SPILL_H
 

@@ -279,8 +279,9 @@
    eigenvalue again as a Rayleigh quotient with sums in extended precision, so
    that it does not depend on the number of processes. */
 #define RITZ_DIGITS_LOST 1e-13
-/* The same of the built-in engines, which then compute vectors again too: errors
-   are at most as large, and residuals of 1e-10 are promised. */
+/* The same for the built-in engines, which then compute vectors again as well.
+   Rounding below this leaves errors of at most 5e-11, where residuals
+   |lambda K^-1 M x - x| / |x| of 1e-10 are promised. */
 #define RITZ_DIGITS_FEW 5e-11
 /* Relative residual at which Krylov-Schur and block Lanczos of engine slepc
    have converged. Vectors become more accurate by one inverse iteration. */
@@ -289,17 +290,18 @@
    this part of theta |x|, norms by M. The vectors returned are more accurate,
    by one inverse iteration. */
 #define RITZ_LANCZOS_SETTLED 1e-10
-/* The same where eigenvalues need a given relative accuracy: this part of the
-   square root of it. Errors of eigenvalues are about the squares of residuals
-   divided by the relative distance to eigenvalues that are not found, but pairs
-   below the last ones have much smaller residuals. For 500 modes of a solid the
-   bound was a twentieth of the accuracy requested. */
+/* The same if eigenvalues are requested to a relative accuracy: this part of its
+   square root. The error of an eigenvalue is about the square of the residual
+   divided by the relative distance to the eigenvalues that are not found, and
+   only the last pairs have residuals as large as this. For 500 modes of a solid
+   and an accuracy of 1e-4 the bound was a twentieth of it. */
 #define RITZ_ACCURACY_SETTLED 0.5
-/* If the bound is larger than the accuracy after all, the search is repeated
-   with this part of the residuals. */
+/* If the bound exceeds the accuracy requested, the search is repeated, and pairs
+   have converged at this part of the former residual. */
 #define RITZ_ACCURACY_FINER 1e-2
 /* The range of accuracies that can be requested. Bounds of errors have rounding
-   errors of some 1e-12, and a mode that is less accurate is none. */
+   errors of some 1e-12, which are then far below the accuracy. Eigenvalues with
+   errors of more than 1e-2 are of no use. */
 #define RITZ_ACCURACY_LEAST 1e-8
 #define RITZ_ACCURACY_MOST  1e-2
 /* Cholesky factor of the inner products of a block: a pivot that is a smaller
@@ -329,15 +331,15 @@
 /* Point within a gap of eigenvalues where modes below it are counted, if the
    middle of the gap is an eigenvalue. */
 #define RITZ_COUNT_PLACE 0.3
-/* Modes up to a frequency are counted this far above its lambda, relative: the
-   next is tried where a mode lies there. */
+/* Modes up to a frequency are counted this far above its lambda, relative. If a
+   mode lies there, the next value is tried. */
 #define RITZ_COUNT_ABOVE                                                       \
     {                                                                          \
         1e-8, 1e-7, 3e-7                                                       \
     }
-/* A mode this close to where modes were counted, relative, may have been counted
-   or not: eps of the largest eigenvalue is rounding, up to 1e-10 of a low one.
-   A tenth of the least distance between two such values. */
+/* A mode this close to the value below which modes were counted, relative, may
+   have been counted or not: rounding is eps times the largest eigenvalue, which
+   is up to 1e-10 of a low one. A tenth of the least of RITZ_COUNT_ABOVE. */
 #define RITZ_COUNT_UNCLEAR 1e-9
 /* A mode this close above the end of a range, relative in lambda, is in it. */
 #define RITZ_SPAN_ROUNDING 1e-8
@@ -439,9 +441,9 @@
 /* Default bound of the error of Hankel values of engine projection, relative to
    the largest value. */
 #define RITZ_PROJECTION_TOLERANCE 1e-8
-/* A shift is added to the space of engine projection if the residual of a
-   static solution is above this part of the tolerance: the residuals of both
-   Lyapunov equations were 1 to 100 times that of static solutions. */
+/* A shift is added to the space of engine projection if the largest residual of
+   a static solution is above this part of the tolerance: the residuals of both
+   Lyapunov equations were 1 to 100 times as large (measured). */
 #define RITZ_PROJECTION_SHIFT 1e-3
 /* A Krylov vector is orthogonalised again if less than this part of its energy
    is left: it has then lost 99 % of its length, and with it two digits of
@@ -451,9 +453,9 @@
    than this part of its length; a combination of vectors of one block is
    nothing if its energy is less than this part of theirs. */
 #define RITZ_PROJECTION_DEPENDENT 1e-12
-/* The residual of ADI from which on the equation is also solved in the space of
-   its columns, as a multiple of the tolerance: the residual of that solution was
-   from twice to some thousand times smaller (measured). */
+/* As soon as the residual of ADI is below this multiple of the tolerance, engine
+   projection also solves the equation in the span of ADI's columns: the residual
+   of that solution was from twice to some thousand times smaller (measured). */
 #define RITZ_GALERKIN_LEAD 1e4
 /* A load without its rigid motion below this part, squared, is rounding: there
    is nothing flexible to iterate on. */
@@ -676,8 +678,8 @@
    fill the matrices; the distance of a grid from the axis of a curved system
    that it is on, of that from the origin. */
 #define RITZ_TIE_ROUNDING 0x1p-48
-/* A rotation that is new by less than this part is no motion: grids on a line
-   have five. */
+/* A rigid-body motion of which less than this part is independent of the others
+   is not counted: grids on a line have five. */
 #define RITZ_ROTATION_ON_A_LINE 1e-8
 /* Part of a motion without stiffness that no rigid motion explains: between
    what matrices of six digits do to a rigid mode (1e-5, a judgement) and the
@@ -754,8 +756,9 @@
 #define RITZ_TUNED_STARTS 0.25
 /*
  * A bound holds in exact arithmetic. Solving Lyapunov equations and projecting
- * moves the response by some n eps |G|. The factor is a choice: no error of
- * tests/claims/states.claims comes near its bound by less.
+ * moves the response by some n eps |G|: an error may exceed its bound by this
+ * many times that. The factor is a choice: no error of tests/claims/states.claims
+ * is so close to its bound that it matters.
  */
 #define RITZ_BOUND_ROUNDING 1e3
 /* Next to a slow pole, rounding also moves the response by the first-order
@@ -793,8 +796,8 @@
    room. */
 #define RITZ_CANCELLED_ROUNDINGS 4.0
 /* Eigenvalues within this many times their rounding of a shift may be counted
-   on either side: once for the count, which tests no shift for being an
-   eigenvalue, and once for the eigenvalue. */
+   on either side: once for the count, which does not test whether the shift is
+   an eigenvalue, and once for the eigenvalue. */
 #define RITZ_COUNT_MARGIN 2.0
 /* A ratio of bound to error that is good enough. */
 #define RITZ_GOOD_RATIO 3.0

@@ -326,7 +326,7 @@ void ritz_remark_left_out(const ritz_request *request, int loads, int64_t first,
                         left_out, ritz_column_name(kind), name);
 }
 
-/* What a request's engine of modes is called by ritz_span. */
+/* The engine of a ritz_span for the engine of a request. */
 static ritz_eigen_engine engine_of_modes(ritz_engine engine)
 {
     static const ritz_eigen_engine of[] = {

@@ -395,8 +395,9 @@ static ritz_status find_statics(const residual_task *t)
     return choose_independent(t->response, t->request->tolerance, t->set);
 }
 
-/* The modes that the request asks for: those that it knows, if the next one
-   above them is known too, or computed ones. */
+/* The modes that the request asks for: copies of known modes if the next one
+   above them is known too, so that no cluster is cut; otherwise they are
+   computed. */
 static ritz_status find_modes(const ritz_request *request,
                               const ritz_factor_use *use, ritz_pairs *out)
 {

@@ -19,7 +19,7 @@ enum { RITZ_RATIONAL_GROUPS = 4 };
 typedef struct ritz_rational_loads {
     int kind;          /* RITZ_LOADS_... */
     bool interpolated; /* false: poles are only weighted by it */
-    int64_t first;     /* of all loads, which of them is its first */
+    int64_t first;     /* number of its first load among all loads */
     int64_t count;
     ritz_dense F[3]; /* n x count */
 } ritz_rational_loads;

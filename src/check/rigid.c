@@ -272,7 +272,8 @@ ritz_status ritz_check_grounding(ritz_checker *it)
  *     E = Phi - X X'M Phi,    sin^2 = largest eigenvalue of E'ME.
  */
 
-/* Trace of K over trace of M: an eigenvalue that is certainly not rigid. */
+/* Trace of K over trace of M: a mean stiffness over a mean mass, far above the
+   eigenvalues of rigid-body modes. */
 static double typical_eigenvalue(const ritz_component *c)
 {
     const ritz_sparse *const both[] = {&c->K, &c->M};

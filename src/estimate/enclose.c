@@ -363,7 +363,7 @@ static ritz_status solve_lehmann(const ritz_lehmann *trial, double rho,
     return ritz_general_symmetric(&LJL, out);
 }
 
-/* 1 / (kappa_rho + 1 / tau) + sigma; infinite if that kappa is not positive. */
+/* The eigenvalue of kappa = 1 / (lambda - sigma); infinite unless kappa > 0. */
 static double lambda_of(double kappa, double sigma)
 {
     return kappa > 0.0 ? 1.0 / kappa + sigma : HUGE_VAL;

@@ -64,8 +64,9 @@ static ritz_status open_counter(ritz_estimator *estimator)
 }
 
 /*
- * Count by known eigenvalues, if that is certain: rho is above the first
- * flexible one, below the end to which none is missing, and not close to any.
+ * Count known eigenvalues below rho; false where that is uncertain. It is
+ * certain if rho is above the first flexible eigenvalue, below the value up to
+ * which none is missing, and not close to an eigenvalue.
  */
 static bool count_known(const ritz_pairs *known, double rho, int64_t *below)
 {
@@ -81,7 +82,8 @@ static bool count_known(const ritz_pairs *known, double rho, int64_t *below)
 }
 
 /*
- * The number of full modes below rho; RITZ_ERR_SINGULAR if one lies there.
+ * The number of full modes below rho; RITZ_ERR_SINGULAR if the factor for the
+ * count has a pivot that is zero within rounding, as a mode lies at rho.
  *
  * If the basis has as many columns as the component has dofs, its Ritz values
  * are all eigenvalues, and no factorisation is needed unless rounding may have

@@ -102,10 +102,10 @@ typedef struct ritz_prediction {
     bool edge_unclear;   /* an interval reaches across the band's end */
     bool rigid_unclear;  /* the first flexible mode may be a rigid one */
     bool loose;          /* the bound may be far above the error */
-    bool unmatched;      /* it is not known which mode is some mode's partner */
+    bool unmatched;      /* it is unknown with which mode some mode is paired */
     double count_at;     /* where a count may help; NaN: nowhere */
     int64_t num_full;    /* full modes that may lie below the band's end */
-    int64_t num_missing; /* those in the band without a proven partner */
+    int64_t num_missing; /* those in the band that have no proven pair */
     int64_t first_missing; /* -1: there is none */
     /* the worst |f_r - f| / f is at most, and at least, this; bound below 0: no
        mode has a partner */

@@ -245,8 +245,8 @@ static bool surely_in(const ritz_judge *j, int64_t p)
     return e->high[p] <= j->high && e->low[p] >= j->low;
 }
 
-/* Take the errors of full mode p with partner r into the prediction; `sure` if
-   r is its partner, not only can be. */
+/* Take the errors of full mode p, paired with reduced mode r, into the
+   prediction; `sure` if they are a pair for certain. */
 static void note_pair(ritz_judge *j, int64_t p, int64_t r, bool sure)
 {
     const ritz_enclosure *e = &j->m->enclosure;

@@ -151,7 +151,7 @@ static double participation_of(const ritz_bounder *r, int which, int64_t j)
            sqrt(r->trial->theta[j] - r->trial->sigma);
 }
 
-/* Whether that is not negligible beside those of other modes. */
+/* Whether that is not negligible relative to those of other modes. */
 static bool takes_part(const ritz_bounder *r, int which, int64_t j)
 {
     double most = 0.0;

@@ -251,8 +251,8 @@ static int64_t choose_columns(const ritz_columns *columns, int64_t modes,
 }
 
 /* Whether candidates with different numbers of modes are made from one basis.
-   It is not proven that this has all modes: candidates are measured, and the
-   basis of the result is made again, with that proof. */
+   No count proves that this basis has all modes: candidates are measured, and
+   the basis of the result is made again, with a count. */
 static bool is_shared(const ritz_method *method)
 {
     return method->nested || method->narrow;
@@ -302,8 +302,9 @@ static ritz_status find_family(ritz_fitter *f, const ritz_method *method,
     return RITZ_OK;
 }
 
-/* Flexible modes of a body that are known without the next one above them: so
-   many a method of free modes need not compute. */
+/* How many flexible modes of a body a method with free-interface modes need not
+   compute: all known ones but the last, as it takes known modes only if the next
+   one above them is known too. */
 static int64_t count_known(const ritz_fitter *f, int64_t k)
 {
     const ritz_pairs *known = find_known(f, k);

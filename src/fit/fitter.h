@@ -86,7 +86,8 @@ typedef struct ritz_fit_joined {
 
 struct ritz_fitter {
     ritz_fit_request request;
-    ritz_orders *orders; /* of all factors; lent in each call from outside */
+    ritz_orders *orders; /* fill-reducing orders, lent to all factors during
+                            each call of a function of ritz/fit.h */
     const ritz_component *component; /* borrowed; NULL: of a scene */
     const ritz_scene *scene;         /* borrowed; NULL: of a component */
     ritz_dofs attached;              /* of a component */
@@ -235,8 +236,8 @@ void ritz_fit_second_free(ritz_fit_second *second);
 /** How far beyond the band, times it: 8, and up to 32 for fine tolerances. */
 double ritz_fit_rich_to(const ritz_verify_request *limits);
 
-/** Factors for bounds at a place that has its reference, if they are
- * wanted. */
+/** The estimator of a place, if bounds were requested. The place must have its
+ * reference, whose modes the estimator borrows. */
 ritz_status ritz_fit_estimator(const ritz_fitter *fitter,
                                const ritz_component *full,
                                ritz_fit_place *place);

@@ -40,8 +40,8 @@ typedef struct nesting {
     int64_t every;        /* of listed places the first, and each every-th */
     int64_t step;         /* columns between two cuts that are measured */
     int64_t hardest;      /* the place where the last model was worst */
-    int only;             /* RITZ_ONLY_LIMITED: of cuts, measure what decides
-                             whether they are feasible; 0: everything */
+    int only;             /* RITZ_ONLY_LIMITED: only those errors of cuts are
+                             measured that have a limit; 0: all errors */
 } nesting;
 
 static void nesting_free(nesting *n)

@@ -1,5 +1,6 @@
 /*
- * With A_k = (V'E V)^-1 V'A V and F_k = (V'E V)^-1 V'F, Y solves
+ * The Lyapunov equation projected on the span of V, and the residual of its
+ * solution X = V Y V'. With A_k = (V'E V)^-1 V'A V and F_k = (V'E V)^-1 V'F,
  *
  *     A_k Y + Y A_k' + F_k F_k' = 0,    Y = U U',
  *
@@ -7,8 +8,8 @@
  *
  *     R = Q (T_A Y T_E' + T_E Y T_A' + T_F T_F') Q',
  *
- * the norm of the small matrix in brackets. No difference of large numbers is
- * formed in n rows, so that the residual is known to rounding of A X E'.
+ * whose 2-norm is that of the small matrix in brackets. The residual is known up
+ * to the rounding of A X E'.
  */
 #include "gramians/galerkin.h"
 #include "base/alloc.h"
@@ -17,7 +18,8 @@
 #include <cblas.h>
 #include <lapacke.h>
 
-/* A := Q of A = Q T, n >= its columns; T, square, NULL: not wanted. */
+/* A := Q of A = Q T if the vectors are wanted, otherwise A is lost; of n x k, T
+   is min(n, k) x k, NULL: not wanted. */
 static ritz_status factor_orthogonal(ritz_dense *A, bool vectors, ritz_dense *T)
 {
     const int n = (int)A->nrow, k = (int)A->ncol;
@@ -57,7 +59,7 @@ static ritz_status span_columns(const ritz_dense *S, ritz_dense *V)
     return factor_orthogonal(V, true, NULL);
 }
 
-/* U of Y = U U'. */
+/* U of the solution Y = U U' of the projected equation. */
 static ritz_status solve_projected(const ritz_dense *V, const ritz_dense *AV,
                                    const ritz_dense *EV, const ritz_dense *F,
                                    ritz_dense *U)

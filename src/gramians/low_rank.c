@@ -370,7 +370,8 @@ static ritz_status take_shift(sweep_state *sweep, double _Complex p)
 
 enum {
     TOGETHER = 2,  /* shifts of one projection */
-    GROWN_BY = 256 /* columns beside twice what was left, to compress again */
+    GROWN_BY = 256 /* columns are compressed again when there are so many more
+                      than twice those that were left the last time */
 };
 
 /*

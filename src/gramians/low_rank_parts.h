@@ -25,11 +25,11 @@ typedef struct ritz_low_rank_model {
     ritz_sparse M;     /* borrowed */
     ritz_dofs massive; /* dofs with mass */
     ritz_dofs massless;
-    ritz_dense Phi, MPhi; /* n x a, rigid modes, which are split off */
+    ritz_dense Phi, MPhi; /* n x a, rigid modes, which are decoupled */
     ritz_dense W[RITZ_SIDES][RITZ_HALVES]; /* n x inputs, n x outputs */
     double whole[RITZ_SIDES];              /* |W'W| with rigid motion */
-    double *stiff, *mass;                  /* n, what a dof has of each */
-    double lowest; /* lowest flexible eigenvalue; 1 if there is none */
+    double *stiff, *mass; /* of each dof, by which residuals are scaled */
+    double lowest;        /* lowest flexible eigenvalue; 1 if there is none */
     int64_t num_starts;
     double _Complex start[RITZ_LOW_RANK_STARTS];
 } ritz_low_rank_model;

@@ -17,9 +17,10 @@
  * mirrored.
  *
  * Engine projection solves the equation in the span of Z, a rational Krylov
- * space, and measures the residual of that solution (galerkin.c). Where E and
- * -(A + A') are definite the projected model is stable, and its residual falls
- * faster than that of ADI. The loop ends when it is below the tolerance.
+ * space, and measures the residual of that solution (galerkin.c). It requires
+ * that E and -(A + A') are definite: the projected model is then stable. At
+ * equal columns its residual is smaller than that of ADI. The loop ends when it
+ * is below the tolerance.
  *
  * Poles at 0 are decoupled before the iteration. Their part in v, which is
  * rounding, is subtracted at each shift.
@@ -56,11 +57,11 @@ typedef struct adi_side {
     ritz_dense W; /* residual factor, at first B or C' */
     ritz_dense Z; /* room for `room` columns, ncol in use */
     int64_t room;
-    ritz_dense load; /* W at the start, of engine projection */
-    ritz_dense X;    /* factor of its solution once that has converged */
-    int64_t next;    /* number of columns at which it is computed next */
+    ritz_dense load; /* engine projection: W at the start */
+    ritz_dense X;    /* its factor of the Gramian, once this has converged */
+    int64_t next;    /* columns of Z at which it solves the equation next */
     double first;    /* |W'W| at the start */
-    double residual; /* |W'W| relative to that */
+    double residual; /* |W'W|, or |R| of X, relative to that */
     bool open;
 } adi_side;
 
@@ -111,7 +112,7 @@ static ritz_status start_side(adi *a, int k)
     return a->projects ? ritz_dense_copy(&side->W, &side->load) : RITZ_OK;
 }
 
-/* Projection on one space keeps a model stable only if it is dissipative. */
+/* V'A V of a stable A is stable for every V only if the model is dissipative. */
 static ritz_status refuse_unstable(const adi *a)
 {
     bool dissipative = false;
@@ -447,9 +448,9 @@ static ritz_status refuse_slow(const adi *a, const double *history)
                      a->shifts, worst);
 }
 
-/* Solve the equation in the span of Z when that can be worth its cost: the
-   residual of ADI is not far from the tolerance, and Z has grown by an eighth,
-   or ADI has converged. */
+/* Solve the equation in the span of Z if that is likely to end the iteration:
+   the residual of ADI is not far from the tolerance, and either Z has grown by an
+   eighth since the last time, or ADI has converged. */
 static ritz_status project_side(adi *a, int k)
 {
     adi_side *side = &a->side[k];

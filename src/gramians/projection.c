@@ -17,12 +17,14 @@
  *
  * The bound (projection_error.c) is one of the difference of the transfer
  * functions of both models, and therefore of the error of every Hankel value.
- * It is compared with the tolerance times the largest Hankel value. It is met
- * early where high frequencies are strongly damped, as hardly any Hankel value
- * is in them. The Gramian of each equation by itself contains them
- * (projection_residual.c), and vectors of K_s^-1 M would be the slower to reach
- * them the finer the mesh is: then the space gets static solutions of K + m M
- * for real shifts m > 0 (projection_shift.c), one at a time.
+ * It is compared with the tolerance times the largest Hankel value.
+ *
+ * Where high frequencies are strongly damped, few vectors meet this bound, as
+ * the Hankel values of such modes are small. But the Gramian of each equation
+ * contains these modes, and its residual (projection_residual.c) stays large:
+ * vectors of K_s^-1 M reach high frequencies slowly, and the more slowly the
+ * finer the mesh is. The space then gets static solutions with K + m M for real
+ * shifts m > 0 (projection_shift.c), one shift at a time.
  */
 #include "gramians/projection.h"
 #include "base/alloc.h"
@@ -132,8 +134,9 @@ static ritz_status refuse_large(const projection_state *state,
     return ritz_context(status, reached);
 }
 
-/* Add a shift to the space where only the residuals of the Lyapunov equations
-   are too large and a shift makes them smaller. */
+/* Add a shift to the space if the bound is met and the residuals of the Lyapunov
+   equations are not, and if the static solutions at that shift are not in the
+   space already. */
 static ritz_status add_shift(projection_state *state, bool *added)
 {
     double shift = 0.0, residual = 0.0;

@@ -1,7 +1,7 @@
 /*
  * Residuals of the Lyapunov equations of the large model, from the residuals of
- * its modes. P and Q are the Gramians of the projected model in its states
- * (y, y'), u = Phi y, and E = [I 0; 0 M], A = [0 I; -K -D]. With
+ * its approximate modes Phi. P and Q are the Gramians of the projected model in
+ * its states (y, y'), u = Phi y; E = [I 0; 0 M], A = [0 I; -K -D]. With
  *
  *     K Phi = M Phi Lambda - q L,    D Phi = M Phi Delta - q N,
  *     F = M Phi F_m + q g,           F_m = Phi'F,   g = -L Theta F_m,
@@ -13,7 +13,7 @@
  *                              + [0; q g] [0; q g]',
  *     S = [L N] P + g [0 B_m'],
  *
- * and Y = W Q W', W = diag(M Phi, Phi), with the rows Q_v of velocities, leaves
+ * and Y = W Q W', W = diag(M Phi, Phi), leaves, Q_v being the rows of Q for y',
  *
  *     A'Y E + E'Y A + C'C = diag(q, q) S diag(M Phi, M Phi)' + its transpose
  *                           + diag(q, q) g g' diag(q, q)',
@@ -31,8 +31,8 @@
 
 enum { HALVES = 2 }; /* displacements and velocities */
 
-/* One equation: [S_uu S_uv; S_vu S_vv] and its load. Controllability has no
-   rows of displacements. */
+/* One equation: its S = [S_uu S_uv; S_vu S_vv], its load and the factor of its
+   Gramian. The rows S_uu and S_uv are zero for controllability. */
 typedef struct lyapunov_rest {
     bool observable;
     ritz_dense Z[HALVES];         /* m x r, rows of its factor */
@@ -109,7 +109,8 @@ static ritz_status pick_half(const ritz_dense *Z, int half, ritz_dense *out)
     return RITZ_OK;
 }
 
-/* Row i of [L N] P as a product with the factor of P, or of [L; N] Q_v. */
+/* Block row i of [L N] P or of [L; N] Q_v without the last factor Z' of
+   P = Z Z' or Q = Z Z'. */
 static ritz_status multiply_rest(const mode_rest *rest, const lyapunov_rest *e,
                                  int i, ritz_dense *out)
 {
@@ -123,7 +124,7 @@ static ritz_status multiply_rest(const mode_rest *rest, const lyapunov_rest *e,
     return RITZ_OK;
 }
 
-/* g_i and S_ij of row i. */
+/* g and both blocks of S in block row i. */
 static ritz_status find_row(const mode_rest *rest, int i, lyapunov_rest *e)
 {
     RITZ_OWN(ritz_dense) NZ = {0}, LF = {0};

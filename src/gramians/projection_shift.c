@@ -15,8 +15,8 @@
 #include <math.h>
 
 enum {
-    POINTS = 128, /* of the geometric row of shifts that are compared */
-    BEYOND = 30   /* times the largest eigenvalue is the last of them */
+    POINTS = 128, /* shifts that are compared, in geometric progression */
+    BEYOND = 30   /* the last one is so many times the largest eigenvalue */
 };
 
 /* The largest |r(m)| / |F| of the columns of F; r is working memory, p. */

@@ -20,12 +20,13 @@ ritz_status ritz_gramians_space_low_rank(const ritz_state_space *model,
                                          double tolerance, ritz_gramians *out);
 
 /**
- * The same by solution in the rational Krylov space that the columns of ADI
- * span. Both residuals are measured, in the 2-norm.
+ * The same by Galerkin's condition in the rational Krylov space that the columns
+ * of ADI span. Both residuals are computed from the equations, in the 2-norm.
  *
- * @return as ritz_gramians_space_low_rank; RITZ_ERR_ARGUMENT if E or -(A + A')
- *         is not definite
- * @cost   at most the factorisations of ADI, and some O(n k^2) for k columns
+ * @return as ritz_gramians_space_low_rank(); RITZ_ERR_ARGUMENT if E or
+ *         -(A + A') is not definite
+ * @cost   about the factorisations of ADI, most often fewer, and O(n k^2 + k^3)
+ *         each time that k columns are projected on
  * @see    [DruskinSimoncini2011]
  */
 ritz_status ritz_gramians_space_projection(const ritz_state_space *model,

@@ -245,10 +245,10 @@ static int count_settled(const bool *settled)
 }
 
 /*
- * W := Q of W = Q R, and MW := M Q. `size` is the norm of the components
- * along V that were subtracted from W. Columns of W that are only rounding
- * errors of that subtraction are replaced by random ones, and their rows of R
- * are zero.
+ * W := Q of W = Q R, and MW := M Q, of one block. `size` is the norm of the
+ * components along V that were subtracted from W. Columns of W that are only
+ * rounding errors of that subtraction are replaced by random ones, and their
+ * rows of R are zero.
  *
  * Dividing a short column by its length makes its rounding errors as much
  * longer, and these have components along V: so V is subtracted once more.

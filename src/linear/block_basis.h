@@ -56,15 +56,15 @@ void ritz_block_basis_shorten(ritz_block_basis *b, int64_t kept);
  * they hold is void. */
 void ritz_block_basis_move_step(ritz_block_basis *b, int64_t kept);
 
-/** V := one step of random vectors, multiplied by A^-1 M.
+/** V := one step of random vectors, multiplied by A^-1 M and orthonormalised.
  * @param[out] exhausted  the range of A^-1 M is empty */
 ritz_status ritz_block_basis_begin(ritz_block_basis *b, bool *exhausted);
 
 /** Y := M X for all blocks of a step. */
 void ritz_block_basis_multiply(const ritz_block_basis *b, double *X, double *Y);
 
-/** b->C := V'X for blocks [first, first + count) of V and @p width blocks X: as
- * ritz_blocks_project(). */
+/** b->C := V'X for blocks [first, first + count) of V and @p width blocks of X,
+ * in the order of ritz_blocks_project(). */
 void ritz_block_basis_project(const ritz_block_basis *b, int64_t first,
                               int64_t count, int64_t width, const double *X);
 
@@ -72,8 +72,8 @@ void ritz_block_basis_project(const ritz_block_basis *b, int64_t first,
 void ritz_block_basis_subtract(const ritz_block_basis *b, int64_t first,
                                int64_t count, int64_t width, double *X);
 
-/** Block R_pq of the R of a step, 8 x 8: V_p R_pq is the part of W_q along the
- * p-th new block. */
+/** Where the 8 x 8 block R_pq of the R of a step is: W_q = sum over p of Q_p R_pq
+ * (ritz_block_basis_orthonormalise()). */
 double *ritz_block_basis_square(const ritz_block_basis *b, double *R, int64_t p,
                                 int64_t q);
 

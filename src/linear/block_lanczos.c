@@ -105,8 +105,8 @@ static void solve_step(block_lanczos *L, double *X)
         ritz_factor_solve_rows(L->b.S->A, X);
 }
 
-/* L->b.C := the columns of T for the last step, in the rows of earlier blocks
-   that it is coupled with. Their norm is returned. */
+/* L->b.C := the blocks of T in the columns of the last step and in the rows of
+   the earlier blocks that it is coupled with. Their norm is returned. */
 static double take_coupling(const block_lanczos *L, int64_t j)
 {
     const int64_t count = j - L->coupled;
@@ -121,8 +121,8 @@ static double take_coupling(const block_lanczos *L, int64_t j)
     return size;
 }
 
-/* T_jj := (A + A') / 2 for the blocks from j on; A has its columns block by
-   block. */
+/* T_jj := (A + A') / 2 for the blocks of the last step, the first of which is
+   block j of V. A has its 8 x 8 blocks column by column. */
 static void put_diagonal(block_lanczos *L, int64_t j, const double *A)
 {
     for (int64_t q = 0; q < L->b.width; q++)
@@ -220,9 +220,9 @@ static ritz_status solve_projected(block_lanczos *L)
     return RITZ_OK;
 }
 
-/* q := R z_j, z_j the components of the last step, eight for each block, of the
-   vector of the c-th largest theta (c from 0). The norm of q, which is that of
-   the residual, is returned. */
+/* q := R z_j of the c-th largest theta (c from 0): z_j are the components of its
+   eigenvector of T for the last step, eight for each block. The norm of q, which
+   is that of the residual, is returned. */
 static double last_part(const block_lanczos *L, int64_t c, const double *R,
                         double *q)
 {
@@ -260,9 +260,9 @@ static int64_t count_converged(const block_lanczos *L, int64_t most,
     return c;
 }
 
-/* U := coefficients of the Ritz vectors of the `count` largest theta, in the
-   vectors of V and of the next step. R NULL: without the inverse iteration, and
-   so without the next step. */
+/* U := coefficients, in V and the next step, of the Ritz vectors of the `count`
+   largest theta after one inverse iteration. R NULL: before it, with coefficients
+   in V only. */
 static ritz_status select_ritz(const block_lanczos *L, int64_t count,
                                const double *R, ritz_dense *U)
 {
@@ -283,7 +283,7 @@ static ritz_status select_ritz(const block_lanczos *L, int64_t count,
     return RITZ_OK;
 }
 
-/* The first blocks of V become its combinations U; zeros fill the last one. */
+/* V := V U; the last block is filled up with zeros. */
 static ritz_status combine_basis(block_lanczos *L, const ritz_dense *U)
 {
     const int64_t kept = (U->ncol + B - 1) / B;
@@ -306,7 +306,8 @@ static ritz_status combine_basis(block_lanczos *L, const ritz_dense *U)
  *     A^-1 M V Z = V Z Theta + V_j+1 Q,    F1 = Theta,  F2 = Theta^2 + Q'Q
  *     X'A X = Theta^-1,    X'M X = U'U = Theta^-1 F2 Theta^-1
  *
- * U is multiplied by the eigenvectors; values are those of K.
+ * U is multiplied by the eigenvectors; `values` are eigenvalues of K, the shift
+ * added.
  */
 static ritz_status improve_ritz(const block_lanczos *L, ritz_dense *U,
                                 double *values, ritz_moments *moments)
@@ -362,8 +363,8 @@ static ritz_status extract_vectors(block_lanczos *L, const ritz_dense *U,
     return RITZ_OK;
 }
 
-/* How many blocks of Ritz vectors a restart keeps: 5 k / 4 vectors and more,
-   whole steps. */
+/* How many blocks of Ritz vectors a restart keeps: 5 k / 4 vectors or more, a
+   multiple of the blocks of a step. */
 static int64_t blocks_kept(const block_lanczos *L)
 {
     const int64_t kept = (L->k + L->k / 4 + B - 1) / B + 1;
@@ -422,7 +423,8 @@ static bool is_enough(const block_lanczos *L, int64_t found)
     return found >= L->k && below >= L->b.S->below;
 }
 
-/* T := what couples the last step with the next one, R and R'. */
+/* Put R and R', which couple the last step with the next one, into T, and count
+   the next step among the blocks of V. */
 static void couple_steps(block_lanczos *L, double *R)
 {
     for (int64_t p = 0; p < L->b.width; p++)
@@ -438,8 +440,8 @@ static ritz_status iterate_blocks(block_lanczos *L, double *R, int64_t *found,
                                   ritz_lanczos_end *end)
 {
     /* no check of convergence before there are 2.4 basis vectors for each pair,
-       2.2 if
-       they need not be accurate, or 1.4 if eigenvalues lie on both sides of sigma */
+       2.2 if an accuracy is given, or 1.4 if eigenvalues lie on both sides of
+       sigma */
     int64_t next = ((L->b.S->below > 0                   ? 7
                      : L->settled > RITZ_LANCZOS_SETTLED ? 11
                                                          : 12) *

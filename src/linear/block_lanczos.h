@@ -3,8 +3,8 @@
  * Cholesky factor of A = K - sigma M [GrimesLewisSimon1994]. A block has eight
  * vectors, because the time of a solve is that of reading the factor, which is
  * read once for the whole block. Where many pairs are requested, a step adds two
- * such blocks at once, V_j of sixteen vectors: some fifty vectors more are
- * needed in all, but the factor and the basis are read half as often. Each new
+ * such blocks at once, V_j of sixteen vectors: a tenth more vectors are needed
+ * in all, but the factor and the basis are read half as often. Each new
  * V_j+1 is made orthogonal to all vectors before it:
  *
  *     A^-1 M V_j = V_j-1 R_j' + V_j A_j + V_j+1 R_j+1,   V'M V = I
@@ -17,8 +17,8 @@
  *     V z + V_j+1 R_j+1 z_j / theta = A^-1 M V z / theta
  *
  * is the vector of one more inverse iteration, which needs no solve: this one
- * is returned. If eigenvalues need few digits, the iteration ends earlier, and
- * these vectors are not orthogonal enough: they are combined by Rayleigh-Ritz.
+ * is returned. If a larger residual is admitted, the iteration ends earlier. These
+ * vectors are then not orthogonal enough, and are combined by Rayleigh-Ritz.
  */
 #ifndef RITZ_LINEAR_BLOCK_LANCZOS_H
 #define RITZ_LINEAR_BLOCK_LANCZOS_H
@@ -34,12 +34,12 @@ typedef struct ritz_lanczos_plan {
     int64_t width; /* in: blocks of eight that each step adds, 1 or 2; 0: 2 from
                       100 pairs on */
     double settled; /* in: residual |A^-1 M x - theta x| / |theta x| at which a
-                       pair has converged; 0: 1e-10. If it is given, vectors
-                       are improved by a Rayleigh-Ritz step, and there are
-                       moments; sigma must then be below all eigenvalues */
-    ritz_moments moments; /* out: of what the vectors were before their last
-                             iteration, as ritz_vectors_polish() has them; freed
-                             by the caller */
+                       pair has converged; 0: 1e-10. If it is not 0, vectors are
+                       combined by a Rayleigh-Ritz step, and moments are
+                       returned; sigma must then be below all eigenvalues */
+    ritz_moments moments; /* out: of the vectors before their last inverse
+                             iteration, as ritz_vectors_polish() returns them;
+                             freed by the caller */
     ritz_sparse *fold[2]; /* in: K and M of S if they may be folded during the
                              iteration, see folded.h; NULL: not. Afterwards
                              they are as before, but may be empty after
@@ -58,7 +58,7 @@ typedef struct ritz_lanczos_plan {
  *
  * @param[in]     S       K, M and the factor of K - sigma M, which is positive
  *                        definite if S->below is 0; M positive semidefinite
- * @param[in,out] plan    see above
+ * @param[in,out] plan    what to find; its moments must be empty
  * @param[out]    X       n x at least k, by distance from sigma, columns
  *                        M-orthonormal; empty unless *end is FOUND
  * @param[out]    lambda  eigenvalues of the columns of X, to be freed; NULL

@@ -30,7 +30,7 @@ typedef struct ritz_blocks {
     int64_t n;
     int threads;
     const ritz_tiles *tiles;
-    int64_t most; /* small matrices that one product returns */
+    int64_t most; /* 8 x 8 matrices that one product can return */
     double *sums; /* threads x most x 64 */
 } ritz_blocks;
 

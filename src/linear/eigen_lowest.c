@@ -11,7 +11,8 @@
 #include <math.h>
 
 enum {
-    MEDIUM = 4000, /* dofs: LAPACK where a quarter of all modes is wanted */
+    MEDIUM = 4000, /* dofs up to which LAPACK is used if more than a quarter of
+                      all modes are requested */
 };
 
 /* Every mode, so that none can be missing; the requested ones are kept, and have
@@ -30,7 +31,7 @@ static ritz_status by_lapack(const ritz_sparse *K, const ritz_sparse *M,
     if (span->modes < 0)
         limit = ritz_eigen_lambda(span->up_to_hz) * (1.0 + RITZ_SPAN_ROUNDING);
     end = ritz_pairs_wanted(&P, span, limit);
-    if (end < P.Phi.ncol) /* limit is 0 by number, and below the next mode */
+    if (end < P.Phi.ncol) /* limit is 0 for a number of modes */
         P.proven_to =
             fmax(limit, ritz_pairs_between(&P, end, RITZ_COUNT_PLACE));
     ritz_pairs_truncate(&P, end);

@@ -1,15 +1,15 @@
 /*
  * Lowest pairs of a sparse pencil.
  *
- *     find     Lanczos on (K - sigma M)^-1 M, sigma < 0: K alone is singular
- *              for a free body, and sigma = 0 loses one of a double mode
+ *     find     Lanczos on (K - sigma M)^-1 M. sigma is 0 if the caller has a
+ *              factor of K; otherwise sigma < 0, as K of a free body is singular
  *     polish   inverse iteration and Rayleigh-Ritz on what was found
  *     prove    Sylvester: K - tau M has as many negative pivots as there are
  *              eigenvalues below tau
  *
- * sigma is a guess until modes are known. It should lie no further from the
- * lowest flexible mode than the requested modes: further, and they look alike;
- * too near to zero, and K - sigma M is singular.
+ * sigma is a guess until modes are known. If it is much farther from the lowest
+ * flexible eigenvalue than the requested ones are, theta of all of them are
+ * nearly equal; if it is too near to zero, K - sigma M is singular.
  *
  * Held to: bars and membranes in closed form, free, clamped, with double modes
  * and with dofs without mass.
@@ -42,8 +42,8 @@ enum {
     ATTEMPTS = 12, /* changes of sigma, and requests for more */
     BODY = 6,      /* rigid modes of one free body */
     GUESS = 20,    /* flexible modes requested first if they are not counted */
-    ROUGH_PART = 50, /* block Lanczos for few digits finds k + k / ROUGH_PART +
-                        ROUGH_MORE modes for k, to have a gap to count in */
+    ROUGH_PART = 50, /* with an accuracy, block Lanczos finds k + k / ROUGH_PART
+                        + ROUGH_MORE modes for k, to have a gap to count in */
     ROUGH_MORE = 8,
     GUARD = 2,    /* substructures find k + k / GUARD + GUARD modes for k */
     PLENTY = 20,  /* substructures are of use up to one mode in so many dofs */
@@ -78,8 +78,9 @@ typedef struct search {
                              empty unless the engine is approximate */
     double counted_at;    /* the last count was of modes below this */
     double error;         /* bound of relative errors of eigenvalues */
-    double accuracy;      /* the most that it may be */
-    double settled;       /* residuals of block Lanczos, for that accuracy */
+    double accuracy;      /* its limit */
+    double settled;       /* residual at which pairs of block Lanczos have
+                             converged for that accuracy */
 } search;
 
 static void search_free(search *s)
@@ -148,7 +149,8 @@ static ritz_status shift_near(search *s, double sigma)
     return status;
 }
 
-/* Residuals of s->found; if they are small, digits that K x lost are found. */
+/* Residuals of s->found. If they are small, pairs that lost digits to
+   cancellation in K x are computed again. */
 static ritz_status assess_sharp(search *s, double *worst)
 {
     RITZ_OWN_ARRAY double *energy = NULL;
@@ -209,7 +211,8 @@ static ritz_status shift_elsewhere(search *s, double reach)
 struct engine {
     const char *name;
     bool approximate; /* eigenvalues to s->accuracy only */
-    bool bounded;     /* s->moments are those of the vectors that it returns */
+    bool bounded;     /* it sets s->moments; if it is approximate and does not,
+                         inverse iterations set them */
     /** *lambda stays NULL if the method gives vectors alone. If *end is SLOW,
      * *reach is set as by ritz_lanczos_lowest(). */
     ritz_status (*find)(search *s, ritz_dense *X, double **lambda,
@@ -237,8 +240,8 @@ static ritz_status find_by_arpack(search *s, ritz_dense *X, double **lambda,
 static const engine reliable = {.name = "block Lanczos",
                                 .find = find_by_blocks};
 
-/* More modes than requested are found, and among them one of the widest gaps, in
-   which modes are counted: errors are the smaller, the wider it is. */
+/* More modes than requested are found, so that modes can be counted in the widest
+   gap between the additional ones: the wider it is, the smaller is the bound. */
 static ritz_status find_roughly(search *s, ritz_dense *X, double **lambda,
                                 double *reach, ritz_lanczos_end *end)
 {
@@ -320,7 +323,8 @@ static const engine engines[] = {
                          .find = find_by_amls},
 };
 
-/* With an accuracy block Lanczos, which then is fastest, ends earlier. */
+/* The engine of a span. With an accuracy block Lanczos ends earlier, and auto
+   takes it, as it was the fastest on all models measured. */
 static const engine *engine_of(const ritz_span *span)
 {
     const engine *e = &engines[span->engine];
@@ -341,7 +345,8 @@ static int64_t gap_to_count(const search *s, int64_t end)
         &s->found, s->engine->approximate ? end + (count - end) / 2 : end);
 }
 
-/* s->error := bound for the first `end` pairs, if `count` are below tau. */
+/* s->error := bound of errors of the first `end` pairs, if exactly `count`
+   eigenvalues are below tau. */
 static ritz_status bound_error(search *s, int64_t end, int64_t count,
                                double tau)
 {
@@ -349,7 +354,8 @@ static ritz_status bound_error(search *s, int64_t end, int64_t count,
                             &s->error);
 }
 
-/* s->error := bound for the pairs requested, if the count finds no others. */
+/* s->error := bound of errors of the pairs requested, if no mode is missing among
+   the pairs found. */
 static ritz_status assess_pairs(search *s)
 {
     ritz_pairs *P = &s->found;
@@ -362,7 +368,8 @@ static ritz_status assess_pairs(search *s)
     return bound_error(s, end, at, ritz_pairs_between(P, at, 0.5));
 }
 
-/* Search again with smaller residuals; with usual ones after a few times. */
+/* Have the search repeated with smaller residuals, and to rounding as soon as
+   these would be smaller than the usual ones. */
 static void search_finer(search *s)
 {
     s->settled *= RITZ_ACCURACY_FINER;
@@ -371,8 +378,9 @@ static void search_finer(search *s)
     s->ask += s->ask / ROUGH_PART + ROUGH_MORE;
 }
 
-/* Inverse iterations, if the engine has no bounds of its own, until errors are
-   small; or else pairs are found in another way. */
+/* Inverse iterations until the bound of errors is small, or only the bound if
+   the engine sets the moments itself. If it stays too large, s->found is empty,
+   and the next search has smaller residuals or goes by slices. */
 static ritz_status improve_pairs(search *s, ritz_dense *X, double **lambda)
 {
     const int steps = s->engine->bounded ? 1 : STEPS;
@@ -531,8 +539,8 @@ static ritz_status prove_number(search *s, int64_t *end, bool *done)
 }
 
 /* s->target := number of modes up to the frequency, or a guess if they are not
-   to be counted. The count is made a little above the frequency, where no mode
-   is expected; each call goes further above it. */
+   to be counted. They are counted a little above the frequency, where no mode is
+   expected, and in each further call at the next value above it. */
 static ritz_status count_target(search *s)
 {
     const double above[] = RITZ_COUNT_ABOVE;

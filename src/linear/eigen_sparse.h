@@ -54,7 +54,8 @@ typedef struct ritz_eigen_given {
         *M; /* the same as those of the search, which may be folded */
 } ritz_eigen_given;
 
-/** Dofs, or dofs with mass, up to which LAPACK is faster than a search. */
+/** Number of dofs, or of dofs with mass, up to which LAPACK is faster than a
+ * search. */
 enum { RITZ_EIGEN_SMALL = 600 };
 
 /**
@@ -68,8 +69,8 @@ ritz_status ritz_eigen_search(const ritz_sparse *K, const ritz_sparse *M,
                               const ritz_span *span, const ritz_factor_use *use,
                               ritz_pairs *out);
 
-/** RITZ_ERR_ARGUMENT if the engine of the span knows no accuracy, or if the
- * accuracy is out of range. */
+/** RITZ_ERR_ARGUMENT if the span has an accuracy that is out of range, or an
+ * engine that finds eigenvalues to rounding only. */
 ritz_status ritz_eigen_refuse_accuracy(const ritz_span *span);
 
 #endif

@@ -44,12 +44,15 @@ ritz_status ritz_moments_enclose(const ritz_moments *moments, double sigma,
                                  double tau, int64_t count, double *lower);
 
 /**
- * The largest relative error of the first @p end eigenvalues of P. That of a
- * rigid-body mode is relative to the first flexible eigenvalue.
+ * Bound of the relative errors of the first @p end eigenvalues of P, @p end at
+ * most @p count. That of a rigid-body mode is relative to the first flexible
+ * eigenvalue.
  *
- * @param[in] P    pairs with the moments of their vectors, or of what these were
- *                 before an inverse iteration
- * @param[in] tau, count  as for ritz_moments_enclose()
+ * @param[in]  P        upper bounds of eigenvalues
+ * @param[in]  moments  of the vectors of P, or of these before an inverse
+ *                      iteration
+ * @param[in]  tau, count  as for ritz_moments_enclose()
+ * @param[out] out      infinite if an eigenvalue has no lower bound
  * @return as ritz_moments_enclose()
  */
 ritz_status ritz_pairs_bound(const ritz_pairs *P, const ritz_moments *moments,

@@ -36,9 +36,9 @@ ritz_status ritz_factor_spd_ordered(const ritz_sparse *A, const int64_t *order,
 const int64_t *ritz_factor_order(const ritz_factor *F);
 
 /**
- * Put the numbers of the factor into a file, so that memory has room for
- * something else. The next ritz_factor_solve() reads them back; results have
- * the same bits. ritz_factor_solve_rows() must not come before it.
+ * Write the numbers of the factor to a file and give back their memory. The next
+ * ritz_factor_solve() reads them back; results have the same bits. Until then
+ * ritz_factor_solve_rows() and ritz_factor_solve_two() must not be called.
  *
  * @return RITZ_ERR_FILE as ritz_spill_put(), and the factor can be used
  */
@@ -51,8 +51,8 @@ ritz_status ritz_factor_spill(ritz_factor *F);
 void ritz_factor_solve_rows(ritz_factor *F, double *x);
 
 /**
- * x := A^-1 x for two such blocks, one after the other. Both together take
- * little longer than one: L is read once for both.
+ * x := A^-1 x for two such blocks, which follow each other in x. Both together
+ * take little longer than one, as L is read once for both.
  *
  * @param room  16 n numbers, overwritten
  */

@@ -15,16 +15,16 @@
  * @param[in]  order  as ritz_ordering_new() returns it; NULL: find one
  * @param[out] negative  number of negative eigenvalues
  * @return RITZ_ERR_SINGULAR if a pivot is zero within rounding;
- *         RITZ_ERR_ARGUMENT if an entry is not finite; RITZ_ERR_MEMORY,
- *         also if the part in work would exceed the limit of memory
- * @cost   one factor by MUMPS; memory holds only the part in work
+ *         RITZ_ERR_ARGUMENT if an entry is not finite; RITZ_ERR_MEMORY, also
+ *         if what MUMPS works with would exceed the limit of memory
+ * @cost   one factor by MUMPS; memory holds only the part that it works with
  */
 ritz_status ritz_inertia_negative(const ritz_sparse *A, const int64_t *order,
                                   int64_t *negative);
 
 /** Counts the eigenvalues of K phi = lambda M phi below one value after another.
- * The union of the patterns of K and M and its order are kept between counts;
- * of a factor, memory holds only the part in work. */
+ * The union of the patterns of K and M and its order are kept between counts.
+ * Memory holds only the part of a factor that MUMPS works with. */
 typedef struct ritz_counter ritz_counter;
 
 /**
@@ -37,15 +37,16 @@ typedef struct ritz_counter ritz_counter;
 ritz_status ritz_counter_new(const ritz_sparse *K, const ritz_sparse *M,
                              const int64_t *order, ritz_counter **out);
 
-/** Frees memory that somebody else can do without. */
+/** A function of the caller that frees memory which is not needed during a
+ * count. */
 typedef struct ritz_relief {
     /** @return a failure ends the count with the same status */
     ritz_status (*call)(void *of);
     void *of;
 } ritz_relief;
 
-/** Let a counter call @p relief before each count that would not fit into
- * memory otherwise; NULL, as at first: such a count is refused. */
+/** Let a counter call @p relief before each count that would exceed the limit of
+ * memory. With {0}, as in a new counter, such a count is refused. */
 void ritz_counter_relieve(ritz_counter *C, ritz_relief relief);
 
 /**
@@ -57,8 +58,8 @@ void ritz_counter_relieve(ritz_counter *C, ritz_relief relief);
  * @param[out] below  unchanged on failure
  * @return RITZ_ERR_SINGULAR if a pivot is zero within rounding: an eigenvalue
  *         is at tau; RITZ_ERR_ARGUMENT if tau is not finite; RITZ_ERR_MEMORY,
- *         also if the part in work would exceed the limit of memory; those of
- *         a relief
+ *         also if what MUMPS works with would exceed the limit of memory; the
+ *         status of a relief that failed
  * @cost   an LDL' factorisation by MUMPS
  */
 ritz_status ritz_counter_below(ritz_counter *C, double tau, int64_t *below);
@@ -66,8 +67,8 @@ ritz_status ritz_counter_below(ritz_counter *C, double tau, int64_t *below);
 void ritz_counter_free(ritz_counter **C);
 
 /**
- * ritz_eigen_count() with a given order of rows. It keeps the factor and tests,
- * by three solves, whether tau is an eigenvalue to working accuracy.
+ * ritz_eigen_count() with a given order of rows. MUMPS keeps the factor, and
+ * three solves test whether tau is an eigenvalue to working accuracy.
  *
  * @param[in] order  as for ritz_inertia_negative()
  */

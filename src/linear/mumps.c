@@ -83,7 +83,7 @@ typedef struct mumps_factor {
     int64_t count;
     ritz_sparse *A;     /* borrowed, all but the array */
     int64_t *at;        /* of each row among the entries of one column */
-    ritz_relief relief; /* NULL: none */
+    ritz_relief relief; /* of a counter; {0}: none */
 } mumps_factor;
 
 struct ritz_ldl {
@@ -236,7 +236,7 @@ static ritz_status run_job(mumps_factor *F, int job)
     return RITZ_OK;
 }
 
-/* Refuse a factor that would not fit, also after the relief. */
+/* Call the relief if a factor would not fit; refuse it if it still does not. */
 static ritz_status admit_factor(mumps_factor *F)
 {
     const int64_t bytes = (int64_t)FIELD(F, infog)[MEGABYTES] * 1000000;

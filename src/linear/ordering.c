@@ -137,8 +137,8 @@ static ritz_status order_groups(const grouping *g, const graph *G, int64_t *at)
 
 /* --- orders that are stored ----------------------------------------------- */
 
-/* Equal hashes of two patterns would give one of them an order that is not made
-   for it: its factor has more entries then, and is no less correct. */
+/* If two patterns had the same hash, one of them would get the order of the
+   other: its factor would have more entries, but be correct. */
 typedef struct stored_order {
     int64_t rows, entries;
     uint64_t hash; /* of the pattern */
@@ -187,7 +187,7 @@ void ritz_orders_lent_free(ritz_orders_lent *scope)
     lent = scope->before;
 }
 
-/* FNV-1a, of numbers in place of bytes. */
+/* The hash FNV-1a of whole numbers in place of bytes. */
 static uint64_t hash_numbers(int64_t count, const int64_t *x, uint64_t hash)
 {
     for (int64_t k = 0; k < count; k++)

@@ -22,7 +22,7 @@ enum { RITZ_ORDER_FROM = 2000 };
  */
 ritz_status ritz_ordering_new(const ritz_sparse *A, int64_t **order);
 
-/* Orders that were found, each with the pattern that it is for. */
+/* A store of orders, each with the pattern of the matrix that it is for. */
 typedef struct ritz_orders ritz_orders;
 
 ritz_status ritz_orders_new(ritz_orders **out);
@@ -31,15 +31,16 @@ void ritz_orders_free(ritz_orders **orders);
 /** How many orders are stored. */
 int64_t ritz_orders_count(const ritz_orders *orders);
 
-/* While it exists, this thread takes the order of a pattern from a store if it
-   is there, and stores those that it finds. Matrices K - s M of all shifts s
-   have one pattern, so that their factors need one order. */
+/* While a value of this type exists, ritz_ordering_new() of this thread takes the
+   order of a pattern from a store if it is there, and stores the orders that it
+   finds. K - s M has the same pattern for all shifts s, so that all their factors
+   need one order. */
 typedef struct ritz_orders_lent {
     ritz_orders *before;
 } ritz_orders_lent;
 
-/** Lend @p orders to this thread, until ritz_orders_lent_free(): RITZ_OWN it.
- * NULL: none are stored. */
+/** Lend a store to this thread, until ritz_orders_lent_free(), which RITZ_OWN
+ * calls. @param[in] orders  NULL: no order is stored until then */
 ritz_orders_lent ritz_orders_lend(ritz_orders *orders);
 void ritz_orders_lent_free(ritz_orders_lent *scope);
 

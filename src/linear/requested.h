@@ -25,11 +25,11 @@ int64_t ritz_pairs_wanted(const ritz_pairs *P, const ritz_span *span,
 int64_t ritz_pairs_gap(const ritz_pairs *P, int64_t end);
 
 /** A value between eigenvalues k - 1 and k of @p P, at @p part (0 to 1) of the
- * way; beyond the first or the last one if there is only one of them. */
+ * way; below the first one if k is 0, above the last one if k is their number. */
 double ritz_pairs_between(const ritz_pairs *P, int64_t k, double part);
 
-/** Whether a pair lies so near to @p limit that a count of the modes below it
- * may include it or not (RITZ_COUNT_UNCLEAR). */
+/** Whether a pair lies so near to @p limit that a count of the modes below the
+ * limit may include it or not (RITZ_COUNT_UNCLEAR). */
 bool ritz_pairs_unclear(const ritz_pairs *P, double limit);
 
 /** Keep the first @p end pairs. */

@@ -12,7 +12,7 @@
  * @param[in]     K, M   n x n, symmetric, both triangles stored
  * @param[in,out] P      Phi and lambda are read; residual, one number for each
  *                       column of Phi, and num_rigid are set
- * @param[out]    energy |x|'|K||x| of each pair; or NULL
+ * @param[out]    energy |x|'|K||x| of each pair; NULL: not wanted
  * @param[out]    worst  largest residual; NaN if one is NaN, 0 without pairs
  * @return RITZ_ERR_MEMORY
  * @cost  one pass over K and M for every eight pairs, on all threads. The last

@@ -6,8 +6,8 @@
 #include <float.h>
 #include <math.h>
 
-/* One more than the last flexible pair that has lost digits; num_rigid if there
-   is none. */
+/* The number of the last flexible pair that has lost digits, counted from 1;
+   num_rigid if there is none. */
 static int64_t end_of_lost(const ritz_pairs *P, const double *energy)
 {
     int64_t end = P->Phi.ncol;
@@ -42,8 +42,9 @@ static ritz_status project_columns(const ritz_sparse *A, product *multiply,
     return RITZ_OK;
 }
 
-/* Phi'A Phi: from columns `first` to end - 1 of it, and those of exact pairs for
-   the rest: the diagonal given, or 1 if it is NULL. */
+/* Phi'A Phi, in which the columns and rows from `first` to end - 1 are computed.
+   All other entries are those of exact pairs: 0, and on the diagonal the numbers
+   given, or 1 if they are NULL. */
 static ritz_status project(const ritz_sparse *A, product *multiply,
                            const ritz_dense *Phi, int64_t first, int64_t end,
                            const double *diagonal, ritz_dense *out)

@@ -1,5 +1,5 @@
-/* Eigenpairs of a sparse pencil from sums of twice the digits, where K x of a
- * low mode cancels. */
+/* Eigenpairs of a sparse pencil by sums with twice the digits, for low modes in
+ * which the terms of K x cancel. */
 #ifndef RITZ_LINEAR_SHARPEN_H
 #define RITZ_LINEAR_SHARPEN_H
 
@@ -8,7 +8,7 @@
 /**
  * Compute pairs again that have lost digits, by Rayleigh-Ritz in the span of all
  * of P: x'K x of a thin plate is ten orders below |x|'|K||x|, so that eigenvalues
- * have errors of 1e-9 and vectors hold as much of each other.
+ * have relative errors of 1e-9, and vectors have errors of 1e-9 along each other.
  *
  * @param[in]     K, M    n x n, symmetric, both triangles stored
  * @param[in]     energy  |x|'|K||x| of each pair (ritz_pairs_assess())
@@ -18,8 +18,9 @@
  *                        change of K x - lambda M x is of the order of
  *                        eps |K||x|.
  * @return RITZ_ERR_MEMORY, or that of ritz_eigen_dense()
- * @cost  K times the vectors that have lost digits, at five times the cost of
- *        ritz_sparse_mul(); 2 n m^2 for m pairs
+ * @cost  a product by K with twice the digits, which takes five times as long as
+ *        ritz_sparse_mul(), of all flexible vectors up to the last that has lost
+ *        digits; a product by M of the same vectors; O(n m^2) for m pairs
  */
 ritz_status ritz_pairs_sharpen(const ritz_sparse *K, const ritz_sparse *M,
                                const double *energy, ritz_pairs *P);

@@ -315,8 +315,8 @@ static ritz_status step_back(slices *s, int64_t count)
 /*
  * Block Lanczos with the present shift: at least `pairs` pairs, s->S.below of
  * them below the shift. As many above it may be nearer to it, and are then
- * found first: the basis has room for these, too. Steps of one block, as a slice
- * has too few eigenvalues for two to be faster.
+ * found first: the basis has room for these, too. Each step adds one block, as a
+ * slice has too few eigenvalues for steps of two blocks to be faster.
  */
 static ritz_status find_run(slices *s, int64_t pairs, run *r,
                             ritz_lanczos_end *end)

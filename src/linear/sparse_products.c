@@ -31,7 +31,8 @@ typedef struct columns_task {
                      the rounding errors of Y, row by row */
 } columns_task;
 
-/* y := A x for eight columns, row by row; low holds their rounding errors. */
+/* y := A x for eight columns, row by row. `low` is room for the rounding errors
+   of y, used if the product is twofold. */
 static void multiply_eight(const columns_task *t, const double *x, double *y,
                            double *low)
 {

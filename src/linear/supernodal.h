@@ -46,11 +46,11 @@ ritz_status ritz_supernodal_new(cholmod_factor *L, const double *sign,
 void ritz_supernodal_solve(ritz_supernodal *S, int64_t width, double *x);
 
 /**
- * Put the values of L into a file, as ritz_spill_put() does, and read them back
- * before the next solve. They are the same bits. Nothing is done if they are
- * there already.
+ * Write the values of L to a file by ritz_spill_put(); read them back, which the
+ * caller must do before the next solve. Nothing is done if they are there
+ * already.
  *
- * @return RITZ_ERR_FILE, and the values are where they were
+ * @return RITZ_ERR_FILE; the values then stay where they were
  */
 ritz_status ritz_supernodal_spill(ritz_supernodal *S);
 ritz_status ritz_supernodal_fetch(ritz_supernodal *S);

@@ -21,14 +21,14 @@ enum {
     T = RITZ_TILE,
     ROWS = LANES == 8 ? 8 : 4,
     MOST = LANES == 8 ? 16 : 2 * LANES, /* columns at once */
-    AHEAD = 64, /* columns of a panel that are fetched in advance */
+    AHEAD = 64, /* a panel is fetched so many columns in advance */
 };
 
 /* How many of `width` columns are worked on at a time. */
 #define STRIP(width) ((width) < MOST ? (width) : MOST)
 
 /* Panels follow each other in memory. A factor that exceeds the caches is read
-   a third faster if this is told in advance (64 to 256 columns, measured). */
+   a third faster if it is fetched 64 to 256 columns in advance (measured). */
 INLINE void fetch_ahead(const double *a)
 {
     __builtin_prefetch(a + (ptrdiff_t)AHEAD * T, 0, 2);
@@ -110,7 +110,7 @@ INLINE int64_t least(int64_t a, int64_t b)
     return a < b ? a : b;
 }
 
-/* Fetch the rows of x, or of the top, that panel p needs. */
+/* Fetch the rows of x or `top` that panel p needs. */
 INLINE void fetch_rows(const int64_t width, const ritz_block_column *b,
                        int64_t p, const double *x, const double *top)
 {

@@ -1,8 +1,8 @@
 /*
  * The kernel `twofold` of tiles.h. twofold_2.c, twofold_4.c and twofold_8.c
- * define LANES and include this file; each is compiled as its tiles are, but
- * never fuses a product with a sum, as rounding errors would be lost. All three
- * give the same bits.
+ * define LANES and include this file. Each is compiled for the same processors
+ * as tiles_2.c, tiles_4.c and tiles_8.c, but the compiler must not fuse products
+ * with sums, as rounding errors would be lost. All three give the same bits.
  */
 #include "linear/tiles.h"
 

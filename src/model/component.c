@@ -19,10 +19,11 @@ static ritz_status check_matrix(const ritz_sparse *A, int64_t n)
     return ritz_sparse_check(A, A->colptr[n]);
 }
 
-/* What is settled, and the worst asymmetry that was averaged away. */
+/* How matrices of order n are made symmetric, and the worst asymmetry that was
+   found: a matrix and its transpose are averaged. */
 typedef struct settling {
     int64_t n;
-    bool symmetrise; /* any asymmetry */
+    bool symmetrise; /* whatever the asymmetry; false: a large one is refused */
     double worst;
     int64_t *work; /* n numbers for ritz_sparse_sweep_asymmetry() */
 } settling;

@@ -207,7 +207,7 @@ static void take_along(int thread, int64_t from, int64_t to, void *task)
 ritz_status ritz_nodes_along(const ritz_nodes *nodes, const ritz_dense *T,
                              int b, ritz_dense *out)
 {
-    enum { WORTHWHILE = 50000 }; /* numbers from which a thread more is used */
+    enum { WORTHWHILE = 50000 }; /* entries of `out` for each further thread */
     RITZ_OWN(ritz_dense) along = {0};
 
     RITZ_CHECK(ritz_dense_new(nodes->count, T->ncol, &along));

@@ -135,8 +135,9 @@ static double count_common(const ritz_nodes *nodes, int64_t i, int64_t j)
     return fmax(sum, 1.0);
 }
 
-/* (a_ip . a_jq) / sum_pq (a_ip . a_jq)^2, at = 3 i + p and to = 3 j + q. Most
-   nodes are whole and have the axes of their neighbours. */
+/* (a_ip . a_jq) / sum_pq (a_ip . a_jq)^2, at = 3 i + p and to = 3 j + q. The sum
+   is 3 if both nodes are whole. Most are, and have the axes of their
+   neighbours. */
 static double share_of(const ritz_nodes *nodes, const bool *whole, int64_t at,
                        int64_t to)
 {
@@ -151,7 +152,7 @@ static double share_of(const ritz_nodes *nodes, const bool *whole, int64_t at,
            count_common(nodes, i, j);
 }
 
-/* Where the dofs of nodes are, for their masses. */
+/* What the sums of nodal masses need to know of the dofs of nodes. */
 typedef struct placed_dofs {
     const ritz_sparse *M;
     const ritz_nodes *nodes;
@@ -184,8 +185,8 @@ static ritz_status place_dofs(const ritz_component *component, placed_dofs *p)
     return RITZ_OK;
 }
 
-/* Column j of m from entry `first`, in no order of rows. Returns its end. With m
-   NULL the entries are only counted. */
+/* Sum column j of m, from entry `first` on, in no order of rows. Returns the end
+   of the column. m NULL: entries are only counted. */
 static int64_t sum_column(placed_dofs *p, int64_t j, int64_t first,
                           ritz_sparse *m)
 {

@@ -231,7 +231,8 @@ static ritz_status take_half(const ritz_modal_model *modes,
     return RITZ_OK;
 }
 
-/* By all modes of the component, where their number allows it. */
+/* Project a component of few dofs: modal coordinates of all its modes make
+   W'E T and W'A T. */
 static ritz_status project_modes(const ritz_component *component,
                                  const ritz_damping *damping,
                                  const ritz_basis *basis, ritz_state_space *out,

@@ -229,7 +229,8 @@ ritz_status ritz_refuse_pole(bool rigid, double hertz)
                      hertz);
 }
 
-/* 1 / (re + i im), without the scaling that only extreme numbers need. */
+/* 1 / (re + i im). Only numbers whose squares overflow or underflow take the slow
+   complex division, which scales. */
 static double _Complex invert(double re, double im)
 {
     const double square = re * re + im * im;
@@ -442,7 +443,7 @@ static ritz_status mark_massless(int64_t count, const ritz_dense *D,
     poles->count -= count;
     poles->massless = count;
     poles->coupled = poles->coupled || count > 0;
-    if (count > 0 && !poles->D.val) /* beside modes that nothing couples */
+    if (count > 0 && !poles->D.val) /* damping couples none of the modes */
         RITZ_CHECK(ritz_dense_new(poles->count + count, poles->count + count,
                                   &poles->D));
     for (int64_t j = 0; j < poles->count && count > 0; j++)

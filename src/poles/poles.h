@@ -45,8 +45,8 @@ typedef struct ritz_residual {
     double uncertain; /* error of the changes by ratios, relative to |H|; 0:
                          rounding */
     double a, b;
-    bool known;      /* a and b are all that D and K4 do to them */
-    double unit;     /* of mu: term j is kept times its power j */
+    bool known;      /* D acts on these modes by a and b alone, K4 not at all */
+    double unit;     /* scale of mu: term j is stored times unit^j */
     double *part[3]; /* C, Cv and Ca: of each term j its C R_j, num_outputs
                             x num_inputs, as ritz_dense */
 } ritz_residual;
@@ -133,15 +133,15 @@ void ritz_poles_free(ritz_poles *poles);
 /**
  * Poles of all modes.
  *
- * @param[in] to_hz  where responses end that are of interest; 0: not known
- * @return RITZ_ERR_ARGUMENT if an eigenvalue is negative beyond rounding, of
+ * @param[in] to_hz  highest frequency of interest; 0: not known
+ * @return RITZ_ERR_ARGUMENT if an eigenvalue is negative beyond the rounding of
  *         the largest eigenvalue or of (2 pi to_hz)^2
  */
 ritz_status ritz_poles_of_dense(const ritz_second_order *model,
                                 const ritz_damping *damping, double to_hz,
                                 ritz_poles *out);
 
-/** The same, given the pairs of ritz_eigen_dense(K, M). */
+/** ritz_poles_of_dense(), given the pairs of ritz_eigen_dense(K, M). */
 ritz_status ritz_poles_of_modes(const ritz_second_order *model,
                                 const ritz_damping *damping, double to_hz,
                                 const ritz_pairs *pairs, ritz_poles *out);
@@ -269,7 +269,7 @@ void ritz_residual_free(ritz_residual *residual);
 ritz_status ritz_static_rest(const ritz_second_order *model,
                              const ritz_pairs *pairs, ritz_residual *out);
 
-/** ritz_static_gain, given the pairs of ritz_eigen_dense. */
+/** ritz_static_gain(), given the pairs of ritz_eigen_dense(K, M). */
 ritz_status ritz_static_gain_of_modes(const ritz_second_order *model,
                                       const ritz_pairs *pairs,
                                       int64_t num_rigid, ritz_dense *out);
@@ -351,11 +351,11 @@ ritz_status ritz_spectrum_shape(const ritz_spectrum *spectrum, int64_t j,
  */
 
 /**
- * From an estimate to the pair nearest to it.
+ * Iterate from an estimate of a damped eigenpair to a pair near it.
  *
  * @param[in]     Z  of ritz_impedance_new
  * @param[in,out] x  n x 2, real and imaginary part
- * @return RITZ_ERR_CONVERGENCE if s does not settle
+ * @return RITZ_ERR_CONVERGENCE if s does not converge
  */
 ritz_status ritz_refine(const ritz_component *component, ritz_zldl *Z,
                         ritz_dense *x, double _Complex *s);

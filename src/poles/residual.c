@@ -207,9 +207,10 @@ static ritz_status rest_solver_new(const ritz_component *component,
 }
 
 /*
- * Last change of a term, the worst of all inputs, relative to what is
- * negligible against its largest value or against the whole response at the end
- * of the range: @p change over what is wanted, @p required over what is needed.
+ * How much the last iteration changed a term, the worst of all inputs, relative
+ * to a tolerance: that at which the iteration ends (@p change), and the larger
+ * one that must be met (@p required). Both are parts of the largest value of the
+ * term plus parts of the whole response at the end of the range.
  */
 static void measure_change(const rest_solver *s, const ritz_dense *R,
                            const ritz_dense *last, double *change,

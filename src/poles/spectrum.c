@@ -374,7 +374,7 @@ typedef struct found {
     int64_t count, size;
     double _Complex *s; /* count */
     double _Complex *y; /* size x count */
-    ritz_dense A;       /* without what K4 does */
+    ritz_dense A;       /* without K4 */
     double norm;        /* of A, Frobenius */
 } found;
 

@@ -99,7 +99,8 @@ static ritz_status take_step(const ritz_component *c, ritz_zldl *Z,
     RITZ_CHECK(add_product(&c->D, 1.0, x, u));
     status = factor_at(c, *s, Z);
     *move = 0.0;
-    last = status == RITZ_ERR_SINGULAR; /* s is the eigenvalue: x, beside it */
+    last = status == RITZ_ERR_SINGULAR; /* s is the eigenvalue: x is found with
+                                           a factor at a point near it */
     if (last)
         status = factor_at(c, *s * (1.0 + RITZ_NUDGE), Z);
     if (last && status == RITZ_ERR_SINGULAR)

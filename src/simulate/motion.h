@@ -64,7 +64,7 @@ typedef enum ritz_term {
 void ritz_motion_add(const ritz_motion *motion, ritz_term term, double alpha,
                      const double *x, double *y);
 
-/** y += alpha A x of a dense matrix; nothing of {0}. */
+/** y += alpha A x of a dense matrix; y stays as it is if A is {0}. */
 void ritz_motion_gemv(const ritz_dense *A, double alpha, const double *x,
                       double *y);
 /** x'A x, without room for A x. */

@@ -218,7 +218,7 @@ static double compare_modes(const ritz_sides *sides, int64_t k, int64_t r)
 
 /* Partners by shapes. */
 
-/* No partner for any mode, and no MAC. */
+/* No mode is paired, and there is no MAC. */
 static ritz_status match_none(ritz_sides *sides)
 {
     const int64_t count = sides->full->poles.count;
@@ -361,8 +361,8 @@ typedef struct pairing {
     int64_t m, n;  /* of the full model, of the reduced one */
     double *cost;  /* m x n, row by row */
     double *total; /* (m + 1) x (n + 1), of aligning the first ones */
-    int64_t *of;   /* m, partner; -1: none */
-    int64_t *by;   /* n, whose partner; -1: nobody's */
+    int64_t *of;   /* m, the reduced mode paired with each full one; -1: none */
+    int64_t *by;   /* n, the full mode paired with each reduced one; -1: none */
 } pairing;
 
 static void pairing_free(pairing *p)
@@ -437,7 +437,7 @@ static void align_modes(pairing *p)
     }
 }
 
-/* Cost of mode k with partner r, each of which may be none; infinite where two
+/* Cost of pairing mode k with r, each of which may be none; infinite where two
    unpaired modes would cost less. */
 static double cost_of(const pairing *p, int64_t k, int64_t r)
 {
@@ -450,8 +450,8 @@ static double cost_of(const pairing *p, int64_t k, int64_t r)
     return cost <= 2.0 * RITZ_SKIP_COST ? cost : HUGE_VAL;
 }
 
-/* Give mode k partner r, and the former owner of r that of k, if that costs
-   less. */
+/* Pair mode k with r, and the two modes that were paired with them with each
+   other, if that costs less. */
 static bool exchange_partners(pairing *p, int64_t k, int64_t r)
 {
     int64_t old = p->of[k];
@@ -481,7 +481,7 @@ static void exchange_all(pairing *p)
     }
 }
 
-/* The MAC of an observable mode without partner is 0. */
+/* The MAC of an observable mode that is not paired is 0. */
 static void take_partners(const pairing *p, ritz_sides *sides)
 {
     const ritz_poles *full = &sides->full->poles;

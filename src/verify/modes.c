@@ -94,7 +94,7 @@ static void tell_mode(const ritz_sides *sides, extreme found, ritz_measure *out)
                    is_hidden(sides, found.mode) ? ", rigid of rounded K" : "");
 }
 
-/* The largest error of modes in the band that have a partner. */
+/* The largest error of the paired modes in the band. */
 static void tell_worst(const ritz_sides *sides,
                        double (*error)(const ritz_sides *sides, double nothing,
                                        int64_t k, int64_t r),
@@ -159,7 +159,8 @@ ritz_status ritz_modes_mac(const ritz_sides *sides, ritz_measure *out)
     return RITZ_OK;
 }
 
-/* The number of modes of a model in the band without partner, and the first. */
+/* The number of modes of a model in the band that are not paired, and the
+   first. */
 static void tell_unpaired(const ritz_sides *sides, const ritz_poles *poles,
                           ritz_measure *out)
 {

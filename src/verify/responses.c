@@ -254,7 +254,7 @@ static ritz_status compare_sweep(const ritz_sides *sides,
     return RITZ_OK;
 }
 
-/* Levels are compared where |H| is not negligible beside the largest. */
+/* Levels are compared where |H| is not negligible relative to the largest. */
 static void compare_levels(const ritz_reference_sweep *s, ritz_gap *gap)
 {
     for (int64_t k = 0; k < s->count * s->values; k++) {
@@ -465,7 +465,7 @@ ritz_status ritz_responses_singular(const ritz_sides *sides, ritz_measure *out)
 
 ritz_status ritz_responses_gain(const ritz_sides *sides, ritz_measure *out)
 {
-    if (!sides->gain_reduced.val) /* it was not needed */
+    if (!sides->gain_reduced.val) /* no measure with a limit needs it */
         return RITZ_OK;
     (void)snprintf(out->where, sizeof out->where, "largest singular value");
     return ritz_gain_error(&sides->full->gain, &sides->gain_reduced,

@@ -32,7 +32,7 @@ typedef struct ritz_match {
     /* of each mode of the full model */
     int64_t *partner; /* mode of the reduced one; -1: it has none */
     double *mac;      /* of the cluster it is in; NaN: not known */
-    bool *taken;      /* of each mode of the reduced one: it is a partner */
+    bool *taken;      /* of each mode of the reduced one: it is paired */
 } ritz_match;
 
 /* The full model's responses at some frequencies. */

@@ -38,7 +38,8 @@ typedef struct chart_request {
     cli_list measure, channel;
     cli_list at;         /* of systems: which configurations */
     const char *subject; /* NULL: the only one */
-    const char *against; /* "reduce", "simulate"; NULL: what is known */
+    const char *against; /* "reduce", "simulate"; NULL: "simulate" if records
+                            have its cost */
     const char *error;   /* "relative", "decibels", "both" */
     double up_to_hz;     /* of tracks */
     int64_t top;         /* most modes of each ranking */

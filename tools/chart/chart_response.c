@@ -36,7 +36,8 @@ static const double rounding = 1e-12;
 /* A channel, and the ends of its axes; the template is given the doubles. */
 typedef struct channel {
     int64_t lines; /* one, or as many as there are singular values */
-    int64_t place[MOST_RESPONSES]; /* in H of a point of each response */
+    int64_t place[MOST_RESPONSES]; /* of each response: its index in H of a
+                                      point */
     char title[2 * PICTURE_WORD];  /* "tip / torque", then errors */
     double *size;    /* of the first response at each point, the largest */
     double singular; /* whether it is that of singular values */

@@ -41,7 +41,8 @@ static const char *text_of(const json_t *line, const char *key)
     return text ? text : "";
 }
 
-/* null is as good as absent: JSON has no NaN. */
+/* Check that values are numbers, or null for an absent one, as JSON has no NaN. A
+   cost may have texts, too. */
 static ritz_status check_values(const json_t *line, const char *key)
 {
     json_t *values = json_object_get(line, key);

@@ -41,7 +41,8 @@ ritz_status records_read(const char *path, records *all);
 bool records_is(const char *path);
 
 /**
- * Costs of what ritz-verify measured, from the lines that made it.
+ * Give each line of ritz-verify the times of the lines that made the model it
+ * measured: the processor time to make it, and the cost of simulating it.
  */
 void records_join(records *all);
 

@@ -267,7 +267,7 @@ typedef struct contest {
     const ritz_ranking **ranking;
     int64_t **track;
     char (*name)[2 * RITZ_NAME_SIZE];
-    bool chain; /* each against the one before, not against the first */
+    bool chain; /* each is compared with the one before, not with the first */
 } contest;
 
 /* A group for each ranking and each damping, or for each file. */
