@@ -333,7 +333,9 @@ static ritz_eigen_engine engine_of_modes(ritz_engine engine)
         [RITZ_ENGINE_LANCZOS] = RITZ_EIGEN_LANCZOS,
         [RITZ_ENGINE_ARPACK] = RITZ_EIGEN_ARPACK,
         [RITZ_ENGINE_SLICES] = RITZ_EIGEN_SLICES,
-        [RITZ_ENGINE_AMLS] = RITZ_EIGEN_AMLS, /* the last */
+        [RITZ_ENGINE_AMLS] = RITZ_EIGEN_AMLS,
+        /* what the ranks leave to one process */
+        [RITZ_ENGINE_SLEPC] = RITZ_EIGEN_AUTO, /* the last */
     };
 
     return of[engine];
