@@ -1,5 +1,7 @@
 #include "base/memory.h"
 
+#include "base/group.h"
+
 #include <inttypes.h>
 #include <malloc.h>
 #include <stdatomic.h>
@@ -38,33 +40,12 @@ static int64_t lesser(int64_t a, int64_t b)
     return a < b ? a : b;
 }
 
-/*
- * The limit of the process's control group, and of the groups above it, that of
- * the machine if there is none. /proc/self/cgroup has a line "0::/A/B" of the
- * unified hierarchy; a container sees its own group as the root. The older
- * hierarchy has one file for each kind of resource.
- */
+/* The limit of the process's control group, and of the groups above it; the older
+   hierarchy has one file for each kind of resource. */
 static int64_t group_limit(void)
 {
-    enum { ROOM = 4096 };
-    static const char root[] = "/sys/fs/cgroup";
-    FILE *file = fopen("/proc/self/cgroup", "r");
-    char line[ROOM], path[2 * ROOM];
-    int64_t least = read_number("/sys/fs/cgroup/memory/memory.limit_in_bytes");
-
-    least = lesser(least, read_number("/sys/fs/cgroup/memory.max"));
-    while (file && fgets(line, sizeof line, file)) {
-        if (strncmp(line, "0::/", 4) != 0)
-            continue;
-        line[strcspn(line, "\n")] = '\0';
-        for (char *end = NULL; (end = strrchr(line + 3, '/')); *end = '\0') {
-            snprintf(path, sizeof path, "%s%s/memory.max", root, line + 3);
-            least = lesser(least, read_number(path));
-        }
-    }
-    if (file)
-        fclose(file);
-    return least;
+    return lesser(read_number("/sys/fs/cgroup/memory/memory.limit_in_bytes"),
+                  ritz_group_least("memory.max", read_number));
 }
 
 /* Four fifths of what the machine, or its control group, has. */

@@ -1,6 +1,7 @@
 /* A run: its threads, the files that it reads, its report and record, and the
    status and outputs that it ends with. */
 #include "cli/cli.h"
+#include "cli/cores.h"
 
 #include "base/alloc.h"
 #include "base/draft.h"
@@ -43,13 +44,13 @@ static const char *const MALLOC = "glibc.malloc.hugetlb=1:"
                                   "glibc.malloc.trim_threshold=268435456";
 
 /*
- * As many threads as there are cores, or as the environment allows: a BLAS that
- * counts on more than OpenMP may start waits for them for ever.
+ * As many threads as the process may use cores, or as the environment allows: a
+ * BLAS that counts on more than OpenMP may start waits for them for ever.
  */
 static int allowed_threads(void)
 {
     static const char *const limits[] = {"OMP_NUM_THREADS", "OMP_THREAD_LIMIT"};
-    int64_t threads = sysconf(_SC_NPROCESSORS_ONLN);
+    int64_t threads = cli_cores();
 
     for (size_t k = 0; k < sizeof limits / sizeof *limits; k++) {
         const char *text = getenv(limits[k]);
@@ -59,7 +60,7 @@ static int allowed_threads(void)
             limit < threads)
             threads = limit;
     }
-    return threads > 0 ? (int)threads : 1;
+    return (int)threads;
 }
 
 /*
@@ -87,7 +88,7 @@ static void limit_threads(cli_run *run, const struct stat *file)
     if (length <= 0)
         return;
     self[length] = '\0';
-    snprintf(cores, sizeof cores, "%ld", sysconf(_SC_NPROCESSORS_ONLN));
+    snprintf(cores, sizeof cores, "%d", allowed_threads());
     if (setenv("OMP_THREAD_LIMIT", cores, 1) == 0 &&
         setenv("OMP_NUM_THREADS", cores, 0) == 0 &&
         setenv("GLIBC_TUNABLES", MALLOC, 0) == 0 &&

@@ -1,12 +1,10 @@
-#define _GNU_SOURCE /* NOLINT: declares sched_getaffinity */
-
 #include "cli/libexec.h"
 
 #include "base/text.h"
 #include "cli/cli.h"
+#include "cli/cores.h"
 
 #include <errno.h>
-#include <sched.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -100,20 +98,18 @@ static const char *const neighbours[] = {"OMPI_COMM_WORLD_LOCAL_SIZE",
                                          "MPI_LOCALNRANKS",
                                          "SLURM_TASKS_PER_NODE", NULL};
 
-/* How many cores this process may use: those that it is bound to, but no more
-   than an equal share of the machine. */
+/* How many cores this rank may use, no more than an equal share of the
+   machine. */
 static int64_t count_cores(void)
 {
     const int64_t processes = find_number(neighbours);
     const int64_t all = sysconf(_SC_NPROCESSORS_ONLN);
     const int64_t part = processes > 1 ? all / processes : all;
-    cpu_set_t bound;
-    int64_t cores = part;
+    const int64_t cores = cli_cores();
 
-    if (sched_getaffinity(0, sizeof bound, &bound) == 0 &&
-        CPU_COUNT(&bound) < cores)
-        cores = CPU_COUNT(&bound);
-    return cores > 1 ? cores : 1;
+    if (cores <= part)
+        return cores;
+    return part > 1 ? part : 1;
 }
 
 /* Set the number of threads of the program that execv() is about to start. Its
