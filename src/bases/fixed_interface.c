@@ -122,6 +122,7 @@ static ritz_status find_constraint_modes(partition *s)
     ritz_basis *held = &s->held;
     RITZ_OWN(ritz_dense) Psi = {0};
 
+    ritz_monitor_step("constraint modes", 0, 0);
     RITZ_CHECK(ritz_dense_new(s->i.count, b->count, &Psi));
     for (int64_t j = 0; j < b->count; j++)
         for (int64_t p = K_ib->colptr[j]; p < K_ib->colptr[j + 1]; p++)

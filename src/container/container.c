@@ -54,6 +54,7 @@ static ritz_status write_container(const char *path, const ritz_schema *schema,
     const char *units =
         schema->units > 0 ? (const char *)object + schema->units : "";
 
+    ritz_monitor_step("writing", 0, 0);
     if (schema->check)
         RITZ_CHECK(schema->check(object));
     RITZ_CHECK(ritz_draft_new(path, &draft));
@@ -90,6 +91,7 @@ ritz_status ritz_schema_read(const char *path, const ritz_schema *schema,
     RITZ_OWN(hid_t) file = 0;
     ritz_name found = "";
 
+    ritz_monitor_step("reading", 0, 0);
     RITZ_CHECK(ritz_schema_open(path, found, &file));
     RITZ_REFUSE_IF(strcmp(found, schema->name) != 0, RITZ_ERR_FORMAT,
                    "holds a %s where a %s is due", found, schema->name);

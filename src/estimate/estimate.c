@@ -619,6 +619,7 @@ ritz_status ritz_estimate(const ritz_component *full, const ritz_basis *basis,
     RITZ_OWN(ritz_estimator) *estimator = NULL;
     RITZ_OWN(ritz_measures) found = {0};
 
+    ritz_monitor_step("estimates", 0, 0);
     RITZ_CHECK(ritz_estimator_new(full, request, &estimator));
     RITZ_CHECK(
         ritz_estimator_measure(estimator, basis, reduced, false, &found));

@@ -124,7 +124,6 @@ static ritz_status shift_to(search *s, double sigma)
     ritz_status status = RITZ_OK;
 
     ritz_factor_free(&s->S.A); /* two at once may not fit */
-    ritz_monitor_step("factor", 0, 0);
     RITZ_CHECK(ritz_sparse_add(1.0, s->S.K, -sigma, s->S.M, &A));
     status = ritz_factor_spd(&A, &s->S.A);
     if (status == RITZ_ERR_SINGULAR)

@@ -206,6 +206,7 @@ static ritz_status analyse_sparse(cholesky *C, const ritz_sparse *A,
     RITZ_OWN_ARRAY int64_t *order = NULL;
     cholmod_sparse view = view_sparse(A);
 
+    ritz_monitor_step("order of rows", 0, 0);
     cholmod_l_start(&C->common);
     C->common.print = 0;
     C->common.final_ll = 1; /* LDL', the default, accepts negative pivots */
@@ -233,6 +234,7 @@ static ritz_status factorise_sparse(cholesky *C, const ritz_sparse *A,
     ritz_blas_setting before = {0};
 
     RITZ_CHECK(analyse_sparse(C, A, order));
+    ritz_monitor_step("factor", 0, 0);
     before = ritz_blas_alone(C->common.fl);
     cholmod_l_factorize(&view, C->L, &C->common);
     ritz_blas_restore(before);

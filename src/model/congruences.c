@@ -117,6 +117,7 @@ ritz_status ritz_congruences_of(const ritz_component *component,
     const ritz_sparse *K4 = &component->K4;
     RITZ_OWN(ritz_congruences) s = {0};
 
+    ritz_monitor_step("projection", 0, 0);
     RITZ_CHECK(find_inertia(component, kind, T, &s));
     RITZ_CHECK(project_stiffness(&component->K, T, twofold, &s.K));
     RITZ_CHECK(find_terms(&component->K, kind, T, &s.K_terms));

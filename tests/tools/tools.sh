@@ -383,6 +383,7 @@ holds 'eight tools at once append eight whole records' 'len(j) == 8 and
     sorted(r["order"] for r in j) == [3, 4, 5, 6, 7, 8, 9, 10] and
     all(r["ok"] and r["method"] == "craig-bampton" and
         r["peak_bytes"] > 0 and r["seconds"]["wall"] > 0 and
+        {"start", "reading", "writing"} <= set(r["phases"]) and
         r["inputs"][0].endswith("  bar.h5") and "residual" in r["errors"]
         for r in j)'
 expect 1 'cannot open' ritz-info bar.h5 --record none/runs.jsonl

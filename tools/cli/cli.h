@@ -315,6 +315,11 @@ const char *cli_duration(double seconds, char out[CLI_DURATION]);
 /** Seconds of a monotonic clock. */
 double cli_clock(void);
 
+/** Seconds of each kind of step that the library reported, in order of their
+ * first one: from each step to the next of another kind. "start" is the time
+ * before the first step. */
+json_t *cli_phases(void);
+
 /** Remove the line of progress, before something else is written. */
 void cli_watch_clear(void);
 

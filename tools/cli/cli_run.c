@@ -378,6 +378,7 @@ static ritz_status append_line(const cli_run *run, json_t *line)
     int file = -1;
 
     getrusage(RUSAGE_SELF, &usage);
+    json_object_set_new(line, "phases", cli_phases());
     json_object_set_new(line, "peak_bytes",
                         json_integer(1024 * (json_int_t)usage.ru_maxrss));
     text = cli_json(line, JSON_COMPACT | JSON_PRESERVE_ORDER);

@@ -149,6 +149,54 @@ void cli_warn(cli_run *run, const char *format, ...)
     }
 }
 
+/* --- steps ---------------------------------------------------------------- */
+
+/* Seconds between a step and the next one of another name, summed by name. */
+typedef struct phase {
+    const char *what; /* text of the library */
+    double seconds;
+} phase;
+
+enum { MOST_PHASES = 24 };
+static phase phases[MOST_PHASES]; /* in order of their first step */
+static int num_phases;
+static int now_in;         /* the phase of the last step */
+static double phase_began; /* by cli_clock */
+
+/* Add the seconds since the last step to its phase. */
+static void end_phase(void)
+{
+    const double now = cli_clock();
+
+    phases[now_in].seconds += now - phase_began;
+    phase_began = now;
+}
+
+/* Steps of further names, when there is no room, belong to the last phase. */
+static void begin_phase(const char *what)
+{
+    int k = 0;
+
+    if (phases[now_in].what == what)
+        return;
+    end_phase();
+    while (k < num_phases && strcmp(phases[k].what, what) != 0)
+        k++;
+    if (k == num_phases && k < MOST_PHASES)
+        phases[num_phases++] = (phase){what, 0.0};
+    now_in = k < MOST_PHASES ? k : MOST_PHASES - 1;
+}
+
+json_t *cli_phases(void)
+{
+    json_t *out = json_object();
+
+    end_phase();
+    for (int k = 0; k < num_phases; k++)
+        json_object_set_new(out, phases[k].what, json_real(phases[k].seconds));
+    return out;
+}
+
 /* A kind of step whose total number is known. */
 typedef struct step_series {
     const char *what; /* text of the library */
@@ -231,8 +279,10 @@ static void show_progress(const char *what, int64_t done, const step_series *w)
     else if (w)
         length = snprintf(line, sizeof line, "%s: %" PRId64 " of %" PRId64,
                           what, done, w->total);
-    else
+    else if (done > 0)
         length = snprintf(line, sizeof line, "%s: %" PRId64, what, done);
+    else
+        length = snprintf(line, sizeof line, "%s", what);
     if (length > 0) {
         shown = 1;
         fprintf(stderr, "%s%s", erase, line);
@@ -244,6 +294,7 @@ static void follow_step(const char *what, int64_t done, int64_t total)
 {
     step_series *w = total > 0 ? find_series(what, done, total) : NULL;
 
+    begin_phase(what);
     if (w) {
         w->done = done;
         foresee_end(w);
@@ -295,7 +346,8 @@ void cli_watch(cli_run *run)
     atexit(end_early);
     on_terminal = !run->quiet && isatty(STDERR_FILENO);
     watch_signals();
-    last = cli_clock();
+    last = phase_began = cli_clock();
+    phases[num_phases++] = (phase){"start", 0.0};
     ritz_monitor_observe(follow_step);
 }
 
