@@ -66,8 +66,7 @@ def measure_in(shop, folder, result):
 def measure(shop):
     others = machine.Others(shop.stopwatch)
     shop.prepare()
-    result = {"machine": machine.describe(ROOT), "quick": shop.quick,
-              "repeats": shop.repeats,
+    result = {"machine": machine.describe(ROOT),
               "titles": {job: row["title"] for job, row in shop.jobs.items()}}
     try:
         with tempfile.TemporaryDirectory(
@@ -75,10 +74,23 @@ def measure(shop):
             measure_in(shop, folder, result)
     finally:
         shutil.rmtree(shop.disk, ignore_errors=True)
-    result["seconds"] = shop.elapsed()
-    result["others"] = others.part()
-    result["targets"] = targets.evaluate(result)
+    result["parts"] = [{
+        "models": shop.models, "quick": shop.quick, "repeats": shop.repeats,
+        "seconds": shop.elapsed(), "others": others.part(),
+        "date": result["machine"].pop("date"),
+        "commit": result["machine"].pop("commit")}]
     return result
+
+
+def join(result, earlier):
+    """Add what an earlier run on the same machine measured of other models, and
+    of jobs and figures that this run left out."""
+    if earlier["machine"]["processor"] != result["machine"]["processor"]:
+        sys.exit("bench.py: --add: the last run was on another processor")
+    for key in ("runs", "figures", "models"):
+        for model, found in earlier[key].items():
+            result[key][model] = found | result[key].get(model, {})
+    result["parts"] = earlier["parts"] + result["parts"]
 
 
 def folder_in_memory():
@@ -111,6 +123,9 @@ def main():
     parser.add_argument("--limit", type=float, default=3600.0,
                         metavar="SECONDS",
                         help="a process that takes longer is stopped [3600]")
+    parser.add_argument("--add", action="store_true",
+                        help="keep what the last run measured of other models "
+                        "and rows")
     arguments = parser.parse_args()
     if set(arguments.models or []) - set(models.SHAPES):
         parser.error("models are " + ", ".join(models.SHAPES))
@@ -122,6 +137,9 @@ def main():
         sys.exit(130)
     finally:
         stopwatch.close()
+    if arguments.add and page.RESULTS.exists():
+        join(result, json.loads(page.RESULTS.read_text()))
+    result["targets"] = targets.evaluate(result)
     page.RESULTS.write_text(json.dumps(result, indent=1) + "\n")
     print(page.text(result))
 

@@ -18,7 +18,8 @@ DISTURBED = 0.05  # warn if others used more than this part of the processors
 SWEEP_BYTES = 2 * 8  # a solve reads each entry of the factor twice
 
 JOB_HEAD = ["program", "seconds", "least - most", "of processor", "peak MB",
-            "residual", "eigenvalues", "at least", "phases, seconds"]
+            "residual", "eigenvalues", "at least", "limited by",
+            "phases, seconds"]
 TARGET_HEAD = ["#", "what", "model", "value", "limit", "stretch", "verdict",
                "from, or why not"]
 MODEL_HEAD = ["model", "dofs", "entries of K", "of M", "of the factor",
@@ -45,24 +46,32 @@ def rates(result):
     return most["flops"], most["read"]
 
 
-def floor(result, model, job):
-    """The least seconds that the job can take on this machine: its factor (two
-    with a count) at the speed of dense products, and its solves at the speed at
-    which memory is read."""
-    facts, rate = result["models"][model], rates(result)
-    if not rate or "factor_flops" not in facts:
-        return None
-    factor = facts["factor_flops"] / rate[0]
-    sweep = SWEEP_BYTES * facts["factor_entries"] / rate[1]
+def work(result, model, job):
+    """How many factors a job makes, and how often it reads one for a solve; None
+    if that is not known."""
     said = result["runs"][model].get(job, {}).get("said", {})
     blocks = BLOCKS[model[0]] + COLUMN_BLOCKS
-    if job == "basis":
-        return 2 * factor + blocks * sweep
-    if job in ("basis-no-count", "basis-arpack"):
-        return factor + blocks * sweep
     if job.startswith("slepc"):
-        return factor + (said["solves"] + COLUMN_BLOCKS) * sweep
-    return None
+        return 1, said["solves"] + COLUMN_BLOCKS
+    return {"basis": (2, blocks),
+            "basis-no-count": (1, blocks),
+            "basis-arpack": (2, blocks),
+            "macneal-rubin": (2, blocks),
+            "krylov": (1, 2 * COLUMN_BLOCKS)}.get(job)
+
+
+def floor(result, model, job):
+    """The least seconds that the job can take on this machine, and what limits
+    it: its factors at the speed of dense products, and its solves at the speed
+    at which memory is read."""
+    facts, rate = result["models"][model], rates(result)
+    if not rate or "factor_flops" not in facts or not work(result, model, job):
+        return None, ""
+    factors, solves = work(result, model, job)
+    flops = factors * facts["factor_flops"] / rate[0]
+    reading = solves * SWEEP_BYTES * facts["factor_entries"] / rate[1]
+    part = 100 * flops / (flops + reading)
+    return flops + reading, f"flops {part:.0f} %, memory {100 - part:.0f} %"
 
 
 def job_rows(result, model):
@@ -79,12 +88,13 @@ def job_rows(result, model):
                            in run.get("phases", {}).items())
         spread = (f"{number(wall['least'])} - {number(wall['most'])}"
                   if wall["runs"] > 1 else "one run")
+        least, limited = floor(result, model, job)
         rows.append([title, number(wall["median"]), spread,
                      number(run["cpu"]["median"]),
                      number(run["peak"]["median"] / 1e6),
                      number(run.get("residual"), 2),
                      number(run.get("agreement"), 2),
-                     number(floor(result, model, job)), phases])
+                     number(least), limited, phases])
     return rows, missing
 
 
@@ -136,15 +146,16 @@ def machine_lines(result):
     m = result["machine"]
     lines = [f"{m['processor']}, {m['cores']} cores, "
              f"{m['vector_bits']}-bit vectors, {m['memory'] / 2**30:.0f} GiB, "
-             f"{m['system']}",
-             f"{m['date']}, commit {m['commit'] or 'unknown'}",
-             ("--quick: " if result["quick"] else "")
-             + f"medians of {result['repeats']} runs or fewer, "
-             f"{result['seconds']:.0f} s in all"]
-    if result["others"] > DISTURBED:
-        lines.append(f"DISTURBED: other programs took "
-                     f"{100 * result['others']:.0f} % of the processors "
-                     "meanwhile: trust no time of this run")
+             f"{m['system']}"]
+    for part in result["parts"]:
+        lines.append(
+            f"{', '.join(part['models'])}{' --quick' * part['quick']}: "
+            f"{part['date']}, commit {part['commit'] or 'unknown'}, medians of "
+            f"{part['repeats']} runs or fewer, {part['seconds']:.0f} s in all")
+        if part["others"] > DISTURBED:
+            lines.append(f"DISTURBED: other programs took "
+                         f"{100 * part['others']:.0f} % of the processors "
+                         "meanwhile: trust no time of this run")
     for found in result.get("limits", {}).values():
         lines.append(
             f"{found['threads']} thread{'s' * (found['threads'] > 1)}: dense "
@@ -203,8 +214,9 @@ Times of the tools and of other people's programs for the same job, on the same 
 - The job is Craig-Bampton: 50 modes with the interface held, to a residual of 1e-10, and the static response to each of 48 dofs. Another program solves only for the interior: it reads matrices in PETSc's binary format, projects nothing and writes nothing. The tools read a container and write one.
 - Times are of whole processes. Each program runs once to warm up; then the runs of all programs and models are mixed in random order, and the median is shown. Programs that take long run once. Files are in memory (tmpfs). The tools get `RITZ_SYNC=0` and choose their threads; SLEPc runs with one rank of two threads and with two ranks of one, and the faster of both is compared.
 - *Residual* is the largest |λ K⁻¹ M x - x| / |x| of the modes, computed by the harness with a factor of its own: by SuperLU with one step of refinement, for larger models by MUMPS. On a thin plate the rounding of any factor leaves 1e-10 to 1e-9. *Eigenvalues* is the largest relative difference from those of SLEPc; CalculiX makes its own matrices from the mesh and prints seven digits.
-- *At least* is the time that this machine needs for the same work if nothing else takes time: the operations of the factor (as MUMPS counts them with METIS; two factors with a count) at the speed of dense products, and two readings of the factor for each solve at the speed of memory. For the tools, {solid} solves with blocks of eight vectors are assumed on solids and {plate} on plates, and {columns} more for the interface; for SLEPc the solves that it made, of one vector each. A factor that fits into the processor's cache is read faster.
-- *Peak* is the memory of the largest process; for SLEPc the sum over its ranks.
+- *At least* is the time that this machine needs for the same work if nothing else takes time: the operations of the factor (as MUMPS counts them with METIS; two factors with a count) at the speed of dense products, and two readings of the factor for each solve at the speed of memory. For the tools, {solid} solves with blocks of eight vectors are assumed on solids and {plate} on plates, and {columns} more for the interface; for SLEPc the solves that it made, of one vector each. A factor that fits into the processor's cache is read faster. *Limited by* says how this time divides into the two.
+- *Phases* of the tools are those that `--record` writes: seconds from each step that the library reports to the next of another kind. "factor" includes its packing for solves, "eigenvectors" their refinement and residuals.
+- *Peak* is the memory of the largest process; for SLEPc by itself the sum over its ranks.
 - *Verdict*: `pass` if the value is within the limit, `stretch` if it is also within the better figure of that column. If a tool does not have the option yet, the row names it; it is measured as soon as the tool has it. Models that were not requested are left out where another model has the row.
 
 ## The machine

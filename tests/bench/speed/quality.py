@@ -11,6 +11,7 @@ import models
 # Rows above which SuperLU takes minutes, so that peer_slepc computes residuals.
 LARGEST_FOR_SUPERLU = 45000
 REFERENCES = "slepc-1x2", "scipy", "basis"
+MODES = 50  # that all jobs but those of 500 compute
 
 
 class Unknown(Exception):
@@ -50,14 +51,43 @@ def write_pairs(path, values, vectors):
         numpy.ascontiguousarray(vectors.T).tofile(file)
 
 
-def difference(values, others):
-    """Largest relative difference of two lists of eigenvalues, as far as both
-    go."""
-    count = min(len(values), len(others))
-    if count == 0:
+def difference(values, others, most=MODES):
+    """Largest relative difference of two lists of eigenvalues, of their lowest
+    `most`. It is infinite if one list ends before them and before the other
+    one: a mode is missing."""
+    count = min(max(len(values), len(others)), most)
+    if min(len(values), len(others)) == 0:
         raise Unknown("no eigenvalues to compare")
+    if min(len(values), len(others)) < count:
+        return float("inf")
     a, b = numpy.sort(values)[:count], numpy.sort(others)[:count]
     return float(numpy.max(numpy.abs(a / b - 1)))
+
+
+CLUSTER = 1e-3  # modes as near as this to each other belong together
+ALLOWANCE = 10  # times residual over gap
+
+
+def subspaces(M, pairs, others, residuals):
+    """Largest angle between the same cluster of modes of two programs, as part
+    of what is allowed: ten times the residuals of both over the relative
+    distance to the next mode of 1 / lambda. The last cluster is left out, as the
+    mode behind it is not known."""
+    (values, X), (_, Y) = pairs, others
+    cuts = [0, *(numpy.flatnonzero(numpy.diff(values) > CLUSTER * values[:-1])
+                 + 1)]
+    MX = M @ X
+    worst = 0.0
+    for first, last in zip(cuts, cuts[1:]):
+        rest = Y[:, first:last] - X[:, first:last] @ (
+            MX[:, first:last].T @ Y[:, first:last])
+        angle = numpy.linalg.norm(numpy.sqrt(numpy.maximum(
+            (rest * (M @ rest)).sum(axis=0), 0.0)))
+        theta = 1 / values[max(first - 1, 0):last + 1]
+        gap = numpy.abs(numpy.diff(theta))
+        gap = min(gap[-1], gap[0] if first else gap[-1]) * values[first]
+        worst = max(worst, angle * gap / (ALLOWANCE * sum(residuals)))
+    return float(worst)
 
 
 class Residual:
@@ -139,6 +169,19 @@ def measure(shop, model, runs):
             if residual:
                 runs[job]["residual"] = residual(values[job], found)
     compare(shop.jobs, runs, values)
+    M = models.load(stem)[1][interior][:, interior] if vectors else None
+    for job, found in vectors.items():
+        other = shop.jobs[job].get("beside")
+        if other in vectors and residual:
+            runs[job][f"subspaces beside {other}"] = subspaces(
+                M, (values[job], found), (values[other], vectors[other]),
+                [runs[name]["residual"] for name in (job, other)])
+
+
+def requested(job):
+    """How many modes the command of a job asks for."""
+    words = job["command"].split()
+    return int(words[words.index("--modes") + 1])
 
 
 def compare(jobs, runs, values):
@@ -148,5 +191,5 @@ def compare(jobs, runs, values):
             runs[job]["agreement"] = difference(found, values[reference])
         other = jobs[job].get("beside")
         if other in values:
-            runs[job][f"error beside {other}"] = difference(found,
-                                                            values[other])
+            runs[job][f"error beside {other}"] = difference(
+                found, values[other], requested(jobs[job]))

@@ -72,7 +72,7 @@ class Timing:
             run["said"] = said
             if "phases" in said:
                 run["phases"] = {name: statistics.median(
-                    done["said"]["phases"][name] for done in counted)
+                    done["said"]["phases"].get(name, 0.0) for done in counted)
                     for name in said["phases"]}
             self.runs[model][job] = run
         return self.runs

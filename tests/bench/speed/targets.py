@@ -77,6 +77,9 @@ class Measurements:
         key = f"error beside {other}"
         return self.run(job, key)
 
+    def subspaces(self, job, other):
+        return self.run(job, f"subspaces beside {other}")
+
     def peer(self, key):
         if key not in self.facts:
             raise NotMeasured("SLEPc did not run, whose factor is the measure"
@@ -96,7 +99,7 @@ class Measurements:
     def names(self):
         return {"wall": self.wall, "cpu": self.cpu, "peak": self.peak,
                 "best": self.best, "residual": self.residual,
-                "error": self.error, "peer": self.peer, "model": self.peer,
+                "error": self.error, "subspaces": self.subspaces, "peer": self.peer, "model": self.peer,
                 "figure": self.figure, "max": max, "min": min,
                 "__builtins__": {}}
 

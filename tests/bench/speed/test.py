@@ -18,6 +18,7 @@ except ImportError as missing:
     print("skipped:", missing)
     sys.exit(77)
 
+import bench
 import figures
 import models
 import output4
@@ -130,6 +131,40 @@ def check_residual():
           "an eigenvalue that is 0.1 % wrong leaves 0.001")
 
 
+def check_differences():
+    check(quality.difference([1.0, 2.0], [2.0, 1.0 + 1e-9]) < 2e-9,
+          "eigenvalues are compared in their order")
+    check(quality.difference([1.0, 2.0], [1.0, 2.0, 3.0]) == float("inf"),
+          "a list that ends early has lost a mode")
+    check(quality.difference([1.0, 2.0], [1.0, 2.0, 3.0], 2) == 0.0,
+          "modes beyond those requested need no partner")
+    n = 6
+    values = numpy.array([1.0, 2.0, 2.0, 3.0, 4.0, 5.0])
+    M, X = scipy.sparse.identity(n, format="csc"), numpy.eye(n)
+    turned = X.copy()
+    turned[1:3, 1:3] = [[0.6, -0.8], [0.8, 0.6]]
+    same = quality.subspaces(M, (values, X), (values, turned), [1e-12, 1e-12])
+    check(same < 0.1, "a cluster may be turned in itself", same)
+    turned[:, 0] += 1e-9 * X[:, 3]
+    # gap (1 - 1/2) / 1, allowed 10 (1e-12 + 1e-12) / gap
+    wrong = quality.subspaces(M, (values, X), (values, turned), [1e-12, 1e-12])
+    check(abs(wrong / (1e-9 * 0.5 / 2e-11) - 1) < 1e-6,
+          "an angle is held against ten times residual over gap", wrong)
+
+
+def check_joined():
+    """An earlier run is kept where the new one measured nothing."""
+    def run(model, **jobs):
+        return {"machine": {"processor": "p"}, "runs": {model: jobs},
+                "figures": {}, "models": {model: {"dofs": 1}},
+                "parts": [{"models": [model]}]}
+
+    new, old = run("S10", basis=2), run("S10", basis=1, reduce=3)
+    bench.join(new, old)
+    check(new["runs"] == {"S10": {"basis": 2, "reduce": 3}}
+          and len(new["parts"]) == 2, "--add keeps what is not measured again")
+
+
 def check_tables():
     rows = targets.read()
     jobs = tomllib.loads((HERE / "jobs.toml").read_text())
@@ -170,10 +205,10 @@ def check_page():
     facts = {"dofs": 3, "entries_K": 9, "entries_M": 3}
     result = {
         "machine": {"processor": "none", "vector_bits": 256, "cores": 2,
-                    "memory": 2**30, "system": "", "date": "", "commit": "",
-                    "packages": {}},
-        "quick": True, "repeats": 3, "seconds": 1.0, "limits": {},
-        "others": 0.5,
+                    "memory": 2**30, "system": "", "packages": {}},
+        "parts": [{"models": ["S10", "S50"], "quick": True, "repeats": 3,
+                   "seconds": 1.0, "others": 0.5, "date": "", "commit": ""}],
+        "limits": {},
         "titles": {"basis": "a basis", "krylov": "another"},
         "models": {"S50": facts, "S10": facts},
         "runs": {"S50": {}, "S10": {
@@ -196,7 +231,7 @@ def check_page():
           "models that were not measured for one reason share a row")
     check([row[2] for row in rows if row[0] == "4"]
           == ["S10, S50", "S10", "S50"]
-          and [row[2] for row in rows if row[0] == "7"] == ["S150"] * 4,
+          and [row[2] for row in rows if row[0] == "7"] == ["S150"] * 5,
           "a model not asked for has a row only if no other has")
     del result["runs"]["S10"]["krylov"]
     text = page.markdown(json.loads(json.dumps(result)))
@@ -238,6 +273,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         check_files(tools, pathlib.Path(folder))
     check_residual()
+    check_differences()
+    check_joined()
     check_tables()
     check_verdicts()
     check_page()

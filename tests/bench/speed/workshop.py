@@ -64,7 +64,7 @@ class Workshop:
         self.disk = self.build / "models"
         self.quick, self.only = arguments.quick, arguments.only
         self.repeats = arguments.repeats or (3 if self.quick else 5)
-        self.repeats_of_figures = 1 if self.quick else 3
+        self.repeats_of_figures = 1 if self.quick else self.repeats
         self.starts = 10 if self.quick else 50
         self.limit = arguments.limit
         self.models = arguments.models or (QUICK if self.quick else USUAL)
@@ -210,15 +210,20 @@ class Workshop:
 
     def run(self, job, model):
         row = self.jobs[job]
-        first = row["command"].split()[0]
-        if first.startswith("ritz-"):
+        ours = row["command"].split()[0].startswith("ritz-")
+        command, record = self.command(job, model), self.out(model) / "record"
+        if ours:
             more = TOOLS
+            command += ["--record", record]
         else:
             more = MPI | TOOLS | row.get("environment", ONE_THREAD)
-        done = self.stopwatch(self.command(job, model),
-                              machine.environment(**more), self.folder,
-                              self.limit)
-        if done["out"].startswith("{"):
+        done = self.stopwatch(command, machine.environment(**more),
+                              self.folder, self.limit)
+        if ours:
+            done["said"] = {
+                "phases": json.loads(record.read_text())["phases"]}
+            record.unlink()
+        elif done["out"].startswith("{"):
             done["said"] = json.loads(done["out"])
             done["peak"] = done["said"].get("peak_bytes", done["peak"])
         return done
