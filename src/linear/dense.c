@@ -197,25 +197,44 @@ ritz_status ritz_dense_abs(const ritz_dense *A, ritz_dense *out)
     return RITZ_OK;
 }
 
+/* Rows and columns of a tile: an entry and its mirror image are read together, and
+   a tile's cache lines stay in the cache. */
+enum { MIRROR_TILE = 16 };
+
+static int64_t least(int64_t a, int64_t b)
+{
+    return a < b ? a : b;
+}
+
 void ritz_dense_symmetrise(ritz_dense *A)
 {
-    for (int64_t j = 0; j < A->ncol; j++)
-        for (int64_t i = 0; i < j; i++) {
-            double *upper = &ritz_dense_col(A, j)[i];
-            double *lower = &ritz_dense_col(A, i)[j];
+    const int64_t n = A->ncol, m = A->nrow;
 
-            *upper = *lower = 0.5 * (*upper + *lower);
-        }
+    for (int64_t first = 0; first < n; first += MIRROR_TILE)
+        for (int64_t top = 0; top <= first; top += MIRROR_TILE)
+            for (int64_t j = first; j < least(first + MIRROR_TILE, n); j++)
+                for (int64_t i = top; i < least(top + MIRROR_TILE, j); i++) {
+                    double *upper = &A->val[i + j * m];
+                    double *lower = &A->val[j + i * m];
+
+                    *upper = *lower = 0.5 * (*upper + *lower);
+                }
 }
 
 double ritz_dense_asymmetry(const ritz_dense *A)
 {
+    const int64_t n = A->ncol, m = A->nrow;
     double gap = 0.0;
 
-    for (int64_t j = 0; j < A->ncol; j++)
-        for (int64_t i = 0; i < j; i++)
-            gap = fmax(gap,
-                       fabs(ritz_dense_col(A, j)[i] - ritz_dense_col(A, i)[j]));
+    for (int64_t first = 0; first < n; first += MIRROR_TILE)
+        for (int64_t top = 0; top <= first; top += MIRROR_TILE)
+            for (int64_t j = first; j < least(first + MIRROR_TILE, n); j++)
+                for (int64_t i = top; i < least(top + MIRROR_TILE, j); i++) {
+                    const double d =
+                        fabs(A->val[i + j * m] - A->val[j + i * m]);
+
+                    gap = d > gap ? d : gap;
+                }
     return gap > 0.0 ? gap / ritz_dense_max(A) : 0.0;
 }
 

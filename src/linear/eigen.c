@@ -134,23 +134,26 @@ ritz_status ritz_pairs_copy(const ritz_pairs *from, int64_t count,
  *     T = Q_r - N (N' K N)^-1 N' K Q_r,   T' K T y = lambda diag(m_r) y.
  */
 
-/* out = S A S, exactly symmetric. */
+/* out = S A S, exactly symmetric. @param[in] s  NULL: S is the identity */
 static ritz_status scale_pencil(const ritz_dense *A, const double *s,
                                 ritz_dense *out)
 {
     int64_t n = A->nrow;
 
-    RITZ_CHECK(ritz_dense_new(n, n, out));
-    for (int64_t j = 0; j < n; j++)
-        for (int64_t i = 0; i < n; i++) {
-            double mean = (A->val[i + j * n] + A->val[j + i * n]) / 2.0;
+    RITZ_CHECK(ritz_dense_copy(A, out));
+    ritz_dense_symmetrise(out);
+    for (int64_t j = 0; j < n; j++) {
+        double *column = out->val + j * n;
 
-            RITZ_REFUSE_IF(!isfinite(mean), RITZ_ERR_ARGUMENT,
+        for (int64_t i = 0; i < n; i++) {
+            RITZ_REFUSE_IF(!isfinite(column[i]), RITZ_ERR_ARGUMENT,
                            "entry (%" PRId64 ", %" PRId64
                            ") of a matrix is not finite",
                            i, j);
-            out->val[i + j * n] = s[i] * mean * s[j];
+            if (s)
+                column[i] = s[i] * column[i] * s[j];
         }
+    }
     return RITZ_OK;
 }
 
@@ -274,6 +277,7 @@ static ritz_status by_condensing(const ritz_dense *K, ritz_dense *M,
     return solve_condensed(K, &Q_r, m + null, lambda, X);
 }
 
+/* @param[in] M  NULL: the identity */
 static ritz_status solve_scaled(const ritz_dense *K, const ritz_dense *M,
                                 double *lambda, ritz_dense *X)
 {
@@ -281,6 +285,12 @@ static ritz_status solve_scaled(const ritz_dense *K, const ritz_dense *M,
     RITZ_OWN_ARRAY double *s = NULL;
     double rcond = 0.0;
 
+    if (!M) {
+        RITZ_CHECK(scale_pencil(K, NULL, &K_s));
+        RITZ_CHECK(solve_standard(&K_s, lambda));
+        RITZ_MOVE(*X, K_s);
+        return RITZ_OK;
+    }
     RITZ_CHECK_NEW(s, K->nrow);
     RITZ_CHECK(choose_scale(K, M, s));
     RITZ_CHECK(scale_pencil(K, s, &K_s));
@@ -360,23 +370,37 @@ static ritz_status project_pairs(const ritz_sparse *K, const ritz_dense *M,
     RITZ_CHECK(ritz_sparse_mul_twofold(K, &first, &KX));
     RITZ_CHECK(ritz_dense_mul_tn(&first, &KX, &K_x));
     ritz_dense_symmetrise(&K_x);
-    RITZ_CHECK(ritz_dense_congruence(M, &first, &M_x));
+    if (M)
+        RITZ_CHECK(ritz_dense_congruence(M, &first, &M_x));
+    else
+        RITZ_CHECK(ritz_dense_mul_tn(&first, &first, &M_x));
     RITZ_CHECK(solve_scaled(&K_x, &M_x, lambda, &Y));
     RITZ_CHECK(ritz_dense_mul(&first, &Y, &XY));
     memcpy(first.val, XY.val, (size_t)(XY.nrow * XY.ncol) * sizeof *first.val);
     return RITZ_OK;
 }
 
-/* Whether K is a finite diagonal, and M = I. */
-static bool is_modal(const ritz_dense *K, const ritz_dense *M)
+static bool is_identity(const ritz_dense *M)
+{
+    for (int64_t j = 0; j < M->ncol; j++) {
+        const double *m = ritz_dense_col(M, j);
+
+        for (int64_t i = 0; i < M->nrow; i++)
+            if (m[i] != (i == j ? 1.0 : 0.0))
+                return false;
+    }
+    return true;
+}
+
+static bool is_finite_diagonal(const ritz_dense *K)
 {
     for (int64_t j = 0; j < K->ncol; j++) {
-        const double *k = ritz_dense_col(K, j), *m = ritz_dense_col(M, j);
+        const double *k = ritz_dense_col(K, j);
 
-        if (m[j] != 1.0 || !isfinite(k[j]))
+        if (!isfinite(k[j]))
             return false;
         for (int64_t i = 0; i < K->nrow; i++)
-            if (i != j && (k[i] != 0.0 || m[i] != 0.0))
+            if (i != j && k[i] != 0.0)
                 return false;
     }
     return true;
@@ -428,16 +452,16 @@ static ritz_status solve_pencil(const ritz_dense *K, const ritz_dense *M,
     return RITZ_OK;
 }
 
-ritz_status ritz_eigen_unchecked(const ritz_dense *K, const ritz_dense *M,
-                                 ritz_pairs *out)
+/* @param[in] M  NULL: the identity */
+static ritz_status solve_pairs(const ritz_dense *K, const ritz_dense *M,
+                               ritz_pairs *out)
 {
     RITZ_OWN(ritz_pairs) pairs = {.proven_to = HUGE_VAL};
     int64_t n = K->nrow;
 
-    RITZ_CHECK(ritz_eigen_refuse(n, K->ncol, M->nrow, M->ncol));
     RITZ_CHECK_NEW(pairs.lambda, n);
     RITZ_CHECK_NEW(pairs.residual, n);
-    if (is_modal(K, M)) {
+    if (!M && is_finite_diagonal(K)) {
         RITZ_CHECK(take_modal(K, pairs.lambda, &pairs.Phi));
     } else {
         RITZ_CHECK(solve_pencil(K, M, pairs.lambda, &pairs.Phi));
@@ -453,6 +477,13 @@ ritz_status ritz_eigen_unchecked(const ritz_dense *K, const ritz_dense *M,
     return RITZ_OK;
 }
 
+ritz_status ritz_eigen_unchecked(const ritz_dense *K, const ritz_dense *M,
+                                 ritz_pairs *out)
+{
+    RITZ_CHECK(ritz_eigen_refuse(K->nrow, K->ncol, M->nrow, M->ncol));
+    return solve_pairs(K, is_identity(M) ? NULL : M, out);
+}
+
 ritz_status ritz_eigen_dense(const ritz_dense *K, const ritz_dense *M,
                              ritz_pairs *out)
 {
@@ -466,10 +497,8 @@ ritz_status ritz_eigen_dense(const ritz_dense *K, const ritz_dense *M,
 
 ritz_status ritz_general_symmetric(const ritz_dense *A, ritz_pairs *out)
 {
-    RITZ_OWN(ritz_dense) unit = {0};
-
-    RITZ_CHECK(ritz_dense_identity(A->nrow, &unit));
-    return ritz_eigen_unchecked(A, &unit, out);
+    RITZ_CHECK(ritz_eigen_refuse(A->nrow, A->ncol, A->nrow, A->ncol));
+    return solve_pairs(A, NULL, out);
 }
 
 /*

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 enum {
+    PAGE = 4 << 10,      /* bytes */
     HUGE_PAGE = 2 << 20, /* bytes */
     SHARE = 10,          /* subtrees for each thread, to balance their work */
     WORTHWHILE = 400000, /* one thread for each so many entries of L */
@@ -198,11 +199,13 @@ static int64_t block_size(const ritz_block_column *b)
     return diagonal_size(b->cols) + RITZ_TILE * panels_of(b->below) * b->cols;
 }
 
-/* Allocate room for all values, in huge pages where the system has them. */
+/* Allocate room for all values, in huge pages where the system has them. Fewer
+   values than a huge page holds do not get one, since all of it would be cleared. */
 static ritz_status map_values(ritz_supernodal *S, int64_t count)
 {
-    const size_t page = HUGE_PAGE;
-    const size_t bytes = ((size_t)count * sizeof(double) + page) / page * page;
+    const size_t needed = (size_t)count * sizeof(double);
+    const size_t page = needed < HUGE_PAGE ? PAGE : HUGE_PAGE;
+    const size_t bytes = (needed + page) / page * page;
     void *map = MAP_FAILED;
 
     if (!ritz_alloc_denied || !ritz_alloc_denied())
@@ -210,7 +213,8 @@ static ritz_status map_values(ritz_supernodal *S, int64_t count)
                    MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     RITZ_REFUSE_IF(map == MAP_FAILED, RITZ_ERR_MEMORY,
                    "no memory for a factor of %zu MB", bytes >> 20);
-    (void)madvise(map, bytes, MADV_HUGEPAGE); /* a refusal costs only speed */
+    if (page == HUGE_PAGE) /* a refusal costs only speed */
+        (void)madvise(map, bytes, MADV_HUGEPAGE);
     S->values = map;
     S->bytes = bytes;
     return RITZ_OK;
