@@ -368,8 +368,10 @@ static ritz_status search_methods(ritz_fitter *fitter, ritz_fit *fit)
 
 ritz_status ritz_fitter_search(ritz_fitter *fitter, ritz_fit *out)
 {
-    [[maybe_unused]] RITZ_OWN(ritz_orders_lent) lent =
+    [[maybe_unused]] RITZ_OWN(ritz_orders_lent) orders =
         ritz_orders_lend(fitter->orders);
+    [[maybe_unused]] RITZ_OWN(ritz_spectra_lent) spectra =
+        ritz_spectra_lend(fitter->spectra);
     RITZ_OWN(ritz_fit) fit = {.chosen = -1, .runner_up = -1};
     ritz_status status = RITZ_OK;
 
@@ -420,8 +422,10 @@ static ritz_status approach_order(ritz_fitter *fitter, int64_t order,
 ritz_status ritz_fitter_equal(ritz_fitter *fitter, int64_t order, ritz_fit *fit,
                               int64_t *at)
 {
-    [[maybe_unused]] RITZ_OWN(ritz_orders_lent) lent =
+    [[maybe_unused]] RITZ_OWN(ritz_orders_lent) orders =
         ritz_orders_lend(fitter->orders);
+    [[maybe_unused]] RITZ_OWN(ritz_spectra_lent) spectra =
+        ritz_spectra_lend(fitter->spectra);
     RITZ_OWN_ARRAY int64_t *modes = NULL;
 
     RITZ_CHECK_NEW(modes, fitter->num_bodies);

@@ -262,8 +262,10 @@ static ritz_status refer_scene(ritz_fitter *f)
 
 static ritz_status open_scene(const ritz_scene *scene, ritz_fitter *f)
 {
-    [[maybe_unused]] RITZ_OWN(ritz_orders_lent) lent =
+    [[maybe_unused]] RITZ_OWN(ritz_orders_lent) orders =
         ritz_orders_lend(f->orders);
+    [[maybe_unused]] RITZ_OWN(ritz_spectra_lent) spectra =
+        ritz_spectra_lend(f->spectra);
     ritz_verify_request *limits = &f->request.tolerance;
     const ritz_io *io = NULL;
 
@@ -293,8 +295,10 @@ static ritz_status open_scene(const ritz_scene *scene, ritz_fitter *f)
 static ritz_status open_component(const ritz_component *component,
                                   ritz_fitter *f)
 {
-    [[maybe_unused]] RITZ_OWN(ritz_orders_lent) lent =
+    [[maybe_unused]] RITZ_OWN(ritz_orders_lent) orders =
         ritz_orders_lend(f->orders);
+    [[maybe_unused]] RITZ_OWN(ritz_spectra_lent) spectra =
+        ritz_spectra_lend(f->spectra);
     ritz_verify_request *limits = &f->request.tolerance;
 
     RITZ_REFUSE_IF(!(limits->band_hz[1] > 0.0), RITZ_ERR_ARGUMENT,
@@ -334,6 +338,7 @@ ritz_status ritz_fitter_new(const ritz_component *component,
     f->most_entries = most_entries;
     f->component = component;
     RITZ_CHECK(ritz_orders_new(&f->orders));
+    RITZ_CHECK(ritz_spectra_new(&f->spectra));
     RITZ_CHECK(open_component(component, f));
     RITZ_MOVE(*out, f);
     return RITZ_OK;
@@ -350,6 +355,7 @@ ritz_status ritz_fitter_scene(const ritz_scene *scene,
     f->scene = scene;
     f->most_entries = most_entries;
     RITZ_CHECK(ritz_orders_new(&f->orders));
+    RITZ_CHECK(ritz_spectra_new(&f->spectra));
     RITZ_CHECK(open_scene(scene, f));
     RITZ_MOVE(*out, f);
     return RITZ_OK;
@@ -418,6 +424,7 @@ void ritz_fitter_free(ritz_fitter **fitter)
         ritz_pairs_free(&f->known[k]);
     ritz_bodies_free(&f->still);
     ritz_orders_free(&f->orders);
+    ritz_spectra_free(&f->spectra);
     for (int64_t k = 0; k < f->num_made; k++) {
         ritz_reduced_free(&f->made[k].reduced);
         ritz_dense_free(&f->made[k].parts);

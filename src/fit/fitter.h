@@ -7,6 +7,7 @@
 #define RITZ_FIT_FITTER_H
 
 #include "linear/ordering.h"
+#include "linear/spectra.h"
 
 #include <ritz/assembly.h>
 #include <ritz/fit.h>
@@ -86,8 +87,9 @@ typedef struct ritz_fit_joined {
 
 struct ritz_fitter {
     ritz_fit_request request;
-    ritz_orders *orders; /* fill-reducing orders, lent to all factors during
+    ritz_orders *orders;   /* fill-reducing orders, lent to all factors during
                             each call of a function of ritz/fit.h */
+    ritz_spectra *spectra; /* all modes of small matrices, lent likewise */
     const ritz_component *component; /* borrowed; NULL: of a scene */
     const ritz_scene *scene;         /* borrowed; NULL: of a component */
     ritz_dofs attached;              /* of a component */

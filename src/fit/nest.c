@@ -605,8 +605,10 @@ ritz_status ritz_fitter_reduced(ritz_fitter *f,
                                 const ritz_fit_candidate *candidate,
                                 ritz_reduced *out)
 {
-    [[maybe_unused]] RITZ_OWN(ritz_orders_lent) lent =
+    [[maybe_unused]] RITZ_OWN(ritz_orders_lent) orders =
         ritz_orders_lend(f->orders);
+    [[maybe_unused]] RITZ_OWN(ritz_spectra_lent) spectra =
+        ritz_spectra_lend(f->spectra);
     RITZ_OWN(nesting) n = {0};
     RITZ_OWN(ritz_fit_path) path = {0};
     RITZ_OWN(ritz_reduced) nested = {0};
@@ -690,8 +692,10 @@ ritz_status ritz_fitter_system(ritz_fitter *f,
                                ritz_bodies *body, ritz_fit_path *path,
                                ritz_system *out)
 {
-    [[maybe_unused]] RITZ_OWN(ritz_orders_lent) lent =
+    [[maybe_unused]] RITZ_OWN(ritz_orders_lent) orders =
         ritz_orders_lend(f->orders);
+    [[maybe_unused]] RITZ_OWN(ritz_spectra_lent) spectra =
+        ritz_spectra_lend(f->spectra);
     RITZ_OWN(ritz_bodies) made = {0}, joined = {0};
     RITZ_OWN(ritz_stage) stage = {0};
     RITZ_OWN(ritz_system) system = {0};

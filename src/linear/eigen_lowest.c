@@ -6,6 +6,8 @@
 #include "linear/eigen_sparse.h"
 #include "linear/general.h"
 #include "linear/requested.h"
+#include "linear/residuals.h"
+#include "linear/spectra.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -15,19 +17,50 @@ enum {
                       all modes are requested */
 };
 
-/* Every mode, so that none can be missing; the requested ones are kept, and have
-   their residuals computed. */
-static ritz_status by_lapack(const ritz_sparse *K, const ritz_sparse *M,
-                             const ritz_span *span, ritz_pairs *out)
+/* Every mode, so that none can be missing; from the store that is lent, if the
+   pencil was solved before. */
+static ritz_status solve_all(const ritz_sparse *K, const ritz_sparse *M,
+                             ritz_pairs *out)
 {
-    RITZ_OWN(ritz_pairs) P = {0};
     RITZ_OWN(ritz_dense) K_d = {0}, M_d = {0};
-    double limit = 0.0;
-    int64_t end = 0;
+    RITZ_OWN(ritz_pairs) P = {0};
 
     RITZ_CHECK(ritz_sparse_dense(K, &K_d));
     RITZ_CHECK(ritz_sparse_dense(M, &M_d));
     RITZ_CHECK(ritz_eigen_unchecked(&K_d, &M_d, &P));
+    if (K->nrow <= RITZ_EIGEN_SMALL)
+        RITZ_CHECK(ritz_spectra_keep(K, M, &P));
+    RITZ_MOVE(*out, P);
+    return RITZ_OK;
+}
+
+/* Residuals that LAPACK's pairs have not got yet. All pairs are here, so that
+   their rigid ones are known already. */
+static ritz_status find_residuals(const ritz_sparse *K, const ritz_sparse *M,
+                                  ritz_pairs *P)
+{
+    const int64_t rigid = P->num_rigid;
+    double worst = 0.0;
+
+    if (P->Phi.ncol > 0 && isnan(P->residual[0]))
+        RITZ_CHECK(ritz_pairs_assess(K, M, P, NULL, &worst));
+    P->num_rigid = rigid;
+    return RITZ_OK;
+}
+
+/* The requested ones of all modes, with their residuals. */
+static ritz_status by_lapack(const ritz_sparse *K, const ritz_sparse *M,
+                             const ritz_span *span, ritz_pairs *out)
+{
+    const ritz_pairs *known = ritz_spectra_find(K, M);
+    RITZ_OWN(ritz_pairs) P = {0};
+    double limit = 0.0;
+    int64_t end = 0;
+
+    if (known)
+        RITZ_CHECK(ritz_pairs_copy(known, known->Phi.ncol, &P));
+    else
+        RITZ_CHECK(solve_all(K, M, &P));
     if (span->modes < 0)
         limit = ritz_eigen_lambda(span->up_to_hz) * (1.0 + RITZ_SPAN_ROUNDING);
     end = ritz_pairs_wanted(&P, span, limit);
@@ -35,7 +68,7 @@ static ritz_status by_lapack(const ritz_sparse *K, const ritz_sparse *M,
         P.proven_to =
             fmax(limit, ritz_pairs_between(&P, end, RITZ_COUNT_PLACE));
     ritz_pairs_truncate(&P, end);
-    RITZ_CHECK(ritz_eigen_residuals(&K_d, &M_d, &P));
+    RITZ_CHECK(find_residuals(K, M, &P));
     RITZ_MOVE(*out, P);
     return RITZ_OK;
 }

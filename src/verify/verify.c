@@ -8,6 +8,7 @@
 #include "base/search.h"
 #include "base/tolerances.h"
 #include "linear/general.h"
+#include "linear/spectra.h"
 #include "poles/poles.h"
 #include "verify/sides.h"
 
@@ -142,7 +143,7 @@ static ritz_status open_sweeps(const ritz_reference_request *request,
 }
 
 /* With the damping of the request, which may be assumed. */
-static ritz_status open_reference(const ritz_component *full,
+static ritz_status make_reference(const ritz_component *full,
                                   const ritz_reference_request *request,
                                   bool assumed, ritz_reference **out)
 {
@@ -158,6 +159,25 @@ static ritz_status open_reference(const ritz_component *full,
     RITZ_CHECK(open_sweeps(request, r));
     RITZ_MOVE(*out, r);
     return RITZ_OK;
+}
+
+/* The modes of the band and those above it are of one pencil, solved once where
+   it is small. */
+static ritz_status open_reference(const ritz_component *full,
+                                  const ritz_reference_request *request,
+                                  bool assumed, ritz_reference **out)
+{
+    RITZ_OWN(ritz_spectra) *own = NULL;
+    ritz_spectra_lent lent = {0};
+    ritz_status status = RITZ_OK;
+
+    if (ritz_spectra_are_lent())
+        return make_reference(full, request, assumed, out);
+    RITZ_CHECK(ritz_spectra_new(&own));
+    lent = ritz_spectra_lend(own);
+    status = make_reference(full, request, assumed, out);
+    ritz_spectra_lent_free(&lent);
+    return status;
 }
 
 /* Damping of both models: as requested, else as the full model states it, else
