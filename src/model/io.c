@@ -76,17 +76,19 @@ void ritz_io_respond(const ritz_io *io, double hertz, const double _Complex *X,
     int64_t n = io->B.nrow;
 
     for (int64_t k = 0; k < n; k++) {
-        const double *c = ritz_dense_col(&io->C, k);
-        const double *cv = ritz_dense_col(&io->Cv, k);
-        const double *ca = ritz_dense_col(&io->Ca, k);
+        const double *c = io->C.val + k * io->C.nrow;
+        const double *cv = io->Cv.val + k * io->Cv.nrow;
+        const double *ca = io->Ca.val + k * io->Ca.nrow;
 
         for (int64_t i = 0; i < io->num_outputs; i++) {
-            double _Complex s = ritz_complex(c[i] - w * w * ca[i], w * cv[i]);
+            const double re = c[i] - w * w * ca[i], im = w * cv[i];
 
             if (c[i] == 0.0 && cv[i] == 0.0 && ca[i] == 0.0)
                 continue;
             for (int64_t j = 0; j < io->num_inputs; j++)
-                H[i * io->num_inputs + j] += s * X[k + j * n];
+                H[i * io->num_inputs + j] +=
+                    im == 0.0 ? re * X[k + j * n]
+                              : ritz_complex(re, im) * X[k + j * n];
         }
     }
 }

@@ -249,13 +249,13 @@ static ritz_status solve_decoupled(const ritz_poles *poles,
         const double re = poles->lambda[k] - w * w, im = w * poles->rate[k];
         const double hit = RITZ_POLE_HIT * (poles->lambda[k] + w * w);
         const bool on_pole =
-            fmax(fabs(re), fabs(im)) <= hit && hypot(re, im) <= hit;
+            fabs(re) <= hit && fabs(im) <= hit && hypot(re, im) <= hit;
         const double _Complex g = on_pole ? 0.0 : invert(re, im);
 
         if (on_pole && ritz_poles_matter(poles, k))
             return ritz_refuse_pole(k < poles->num_rigid, hertz);
         for (int64_t j = 0; j < loads->ncol; j++)
-            q[k + j * poles->count] = g * ritz_dense_col(loads, j)[k];
+            q[k + j * poles->count] = g * loads->val[k + j * loads->nrow];
     }
     return RITZ_OK;
 }

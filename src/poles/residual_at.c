@@ -6,6 +6,26 @@
 #include <math.h>
 #include <stdlib.h>
 
+/*
+ * -i w d / (z (z + i w d)), d the rate from given ratios and
+ * z = lambda - w^2 + i w (a + b lambda). Only numbers whose squares overflow or
+ * underflow take the slow complex division, which scales.
+ */
+static double _Complex change_of(const ritz_residual *r, int64_t k, double w2,
+                                 double w)
+{
+    const double lambda = r->lambda[k], d = w * r->rate[k];
+    const double re = lambda - w2, im = w * (r->a + r->b * lambda);
+    const double product_re = re * re - im * (im + d);
+    const double product_im = re * (im + d) + im * re;
+    const double square = product_re * product_re + product_im * product_im;
+    const double scale = -d / square;
+
+    return isnormal(square)
+               ? ritz_complex(scale * product_im, scale * product_re)
+               : ritz_complex(0.0, -d) / ritz_complex(product_re, product_im);
+}
+
 void ritz_residual_add_ratios(const ritz_residual *r, double hertz,
                               double _Complex *H)
 {
@@ -14,20 +34,19 @@ void ritz_residual_add_ratios(const ritz_residual *r, double hertz,
     const double w = sqrt(w2);
 
     for (int64_t k = 0; k < r->num_damped; k++) {
-        double lambda = r->lambda[k];
-        double _Complex z =
-            ritz_complex(lambda - w2, w * (r->a + r->b * lambda));
-        double _Complex iwd = ritz_complex(0.0, w * r->rate[k]);
-        double _Complex change = -iwd / (z * (z + iwd));
+        const double _Complex change = change_of(r, k, w2, w);
+        const double *C = io->C.val + k * io->C.nrow;
+        const double *Cv = io->Cv.val + k * io->Cv.nrow;
+        const double *Ca = io->Ca.val + k * io->Ca.nrow;
 
         for (int64_t i = 0; i < io->num_outputs; i++) {
-            double _Complex c =
-                change * ritz_complex(ritz_dense_col(&io->C, k)[i] -
-                                          w2 * ritz_dense_col(&io->Ca, k)[i],
-                                      w * ritz_dense_col(&io->Cv, k)[i]);
+            const double re = C[i] - w2 * Ca[i], im = w * Cv[i];
+            const double _Complex c =
+                ritz_complex(creal(change) * re - cimag(change) * im,
+                             creal(change) * im + cimag(change) * re);
 
             for (int64_t j = 0; j < io->num_inputs; j++)
-                H[i * io->num_inputs + j] += c * ritz_dense_col(&io->B, j)[k];
+                H[i * io->num_inputs + j] += c * io->B.val[k + j * io->B.nrow];
         }
     }
 }
