@@ -206,13 +206,15 @@ void ritz_summary_free(ritz_summary *summary)
     *summary = (ritz_summary){0};
 }
 
-/* Models of a scene, read from the containers that it names. */
+/* Models of a scene, read from the containers that it names. A container is kept
+   open from the question of what it holds until it is read. */
 
 static ritz_status name_kind(void *, const char *name,
                              char kind[static RITZ_NAME_SIZE])
 {
     RITZ_OWN(ritz_summary) summary = {0};
 
+    RITZ_CHECK(ritz_container_keep(name));
     RITZ_CHECK(ritz_container_summary(name, &summary));
     memcpy(kind, summary.kind, RITZ_NAME_SIZE);
     return RITZ_OK;
@@ -220,12 +222,18 @@ static ritz_status name_kind(void *, const char *name,
 
 static ritz_status read_component(void *, const char *name, ritz_component *out)
 {
-    return ritz_container_read_component(name, out);
+    const ritz_status status = ritz_container_read_component(name, out);
+
+    ritz_container_release();
+    return status;
 }
 
 static ritz_status read_reduced(void *, const char *name, ritz_reduced *out)
 {
-    return ritz_container_read_reduced(name, out);
+    const ritz_status status = ritz_container_read_reduced(name, out);
+
+    ritz_container_release();
+    return status;
 }
 
 const ritz_source ritz_container_source = {
