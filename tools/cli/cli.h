@@ -276,7 +276,8 @@ ritz_status cli_record_line(cli_run *run, json_t *line);
  */
 void cli_watch(cli_run *run);
 
-/** From now on the program ends with status 1 if JSON gets no memory. */
+/** From now on the program ends with status 1 if JSON gets no memory, and keeps
+ * freed memory for its next arrays. */
 void cli_prepare(void);
 
 /**
