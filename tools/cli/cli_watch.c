@@ -360,6 +360,8 @@ void cli_watch(cli_run *run)
 {
     watched = run;
     ritz_container_guard(walk_file);
+    for (int k = 0; k < run->num_operands; k++)
+        walk_ahead(run->operand[k]);
     atexit(end_early);
     on_terminal = !run->quiet && isatty(STDERR_FILENO);
     watch_signals();

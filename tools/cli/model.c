@@ -1,6 +1,7 @@
 #include "cli/model.h"
 
 #include "base/alloc.h"
+#include "cli/walk.h"
 #include "model/squares.h"
 
 #include <ritz/matrix.h>
@@ -173,6 +174,8 @@ ritz_status model_scene(cli_run *run, const char *path, ritz_scene *out)
 
     RITZ_CHECK(cli_input(run, path));
     RITZ_CHECK(ritz_scene_read(path, &scene));
+    for (int64_t k = 0; k < scene.num_components; k++)
+        walk_ahead(scene.component[k].model);
     for (int64_t k = 0; k < scene.num_components; k++) {
         RITZ_CHECK_IN(path, cli_input(run, scene.component[k].model));
         warn_of_model(run, scene.component[k].model);

@@ -35,14 +35,17 @@ static bool same_time(const struct timespec *a, const struct timespec *b)
     return a->tv_sec == b->tv_sec && a->tv_nsec == b->tv_nsec;
 }
 
+static bool are_same(const struct stat *a, const struct stat *b)
+{
+    return a->st_dev == b->st_dev && a->st_ino == b->st_ino &&
+           a->st_size == b->st_size && same_time(&a->st_mtim, &b->st_mtim) &&
+           same_time(&a->st_ctim, &b->st_ctim);
+}
+
 static bool is_remembered(const struct stat *file)
 {
     for (int64_t k = 0; k < num_sound && k < REMEMBERED; k++)
-        if (sound[k].st_dev == file->st_dev &&
-            sound[k].st_ino == file->st_ino &&
-            sound[k].st_size == file->st_size &&
-            same_time(&sound[k].st_mtim, &file->st_mtim) &&
-            same_time(&sound[k].st_ctim, &file->st_ctim))
+        if (are_same(&sound[k], file))
             return true;
     return false;
 }
@@ -150,10 +153,73 @@ static ritz_status explain_end(int outcome, off_t size)
     return RITZ_OK;
 }
 
-ritz_status walk_file(int file)
+static ritz_status start_walker(int file, const struct stat *before, pid_t *out)
 {
     char program[PATH_MAX];
+    pid_t child = -1;
+
+    RITZ_CHECK_IN("cannot be checked", libexec_find("ritz-walk", program));
+    /* if it were ignored, no outcome would be reported */
+    signal(SIGCHLD, SIG_DFL);
+    child = child_start(SIGKILL);
+    if (child == 0)
+        become_walker(program, file, before->st_size);
+    RITZ_REFUSE_IF(child < 0, RITZ_ERR_FILE,
+                   "cannot be checked by a process of its own: %s",
+                   strerror(errno));
+    *out = child;
+    return RITZ_OK;
+}
+
+/* --- files that will be read soon ----------------------------------------- */
+
+enum { MOST_AHEAD = 8 };
+
+/* Processes that were started before their file is opened; child 0: none. */
+static struct walker {
+    struct stat file;
+    pid_t child;
+} ahead[MOST_AHEAD];
+
+/* The entry of a file; NULL: there is none. An empty one, if @p file is NULL. */
+static struct walker *find_ahead(const struct stat *file)
+{
+    for (int k = 0; k < MOST_AHEAD; k++)
+        if (file ? ahead[k].child > 0 && are_same(&ahead[k].file, file)
+                 : ahead[k].child == 0)
+            return &ahead[k];
+    return NULL;
+}
+
+/* Whether a file begins as HDF5 files do. */
+static bool has_signature(int file)
+{
+    static const char signature[] = "\211HDF\r\n\032\n";
+    char begin[sizeof signature - 1] = {0};
+
+    return pread(file, begin, sizeof begin, 0) == (ssize_t)sizeof begin &&
+           memcmp(begin, signature, sizeof begin) == 0;
+}
+
+void walk_ahead(const char *path)
+{
+    const int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    struct walker *free_one = find_ahead(NULL);
     struct stat before = {0};
+
+    if (file >= 0 && free_one && fstat(file, &before) == 0 &&
+        S_ISREG(before.st_mode) && has_signature(file) &&
+        !is_remembered(&before) && !find_ahead(&before) &&
+        start_walker(file, &before, &free_one->child) == RITZ_OK)
+        free_one->file = before;
+    if (file >= 0)
+        close(file);
+}
+
+ritz_status walk_file(int file)
+{
+    struct stat before = {0};
+    struct walker *early = NULL;
     pid_t child = -1;
     int outcome = 0;
 
@@ -161,13 +227,14 @@ ritz_status walk_file(int file)
                    strerror(errno));
     if (is_remembered(&before))
         return RITZ_OK;
-    RITZ_CHECK_IN("cannot be checked", libexec_find("ritz-walk", program));
-    /* if it were ignored, no outcome would be reported */
-    signal(SIGCHLD, SIG_DFL);
-    child = child_start(SIGKILL);
-    if (child == 0)
-        become_walker(program, file, before.st_size);
-    RITZ_REFUSE_IF(child < 0 || child_wait(child, &outcome) != 0, RITZ_ERR_FILE,
+    early = find_ahead(&before);
+    if (early) {
+        child = early->child;
+        early->child = 0;
+    } else {
+        RITZ_CHECK(start_walker(file, &before, &child));
+    }
+    RITZ_REFUSE_IF(child_wait(child, &outcome) != 0, RITZ_ERR_FILE,
                    "cannot be checked by a process of its own: %s",
                    strerror(errno));
     RITZ_CHECK(explain_end(outcome, before.st_size));

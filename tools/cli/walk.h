@@ -35,4 +35,12 @@ typedef enum walk_end {
  */
 ritz_status walk_file(int file);
 
+/**
+ * Start that process for a file that will be opened soon, so that it runs at the
+ * same time as the tool and others like it; walk_file() waits for its end. Does
+ * nothing with what is no HDF5 file or cannot be opened, which is reported when
+ * the tool opens it.
+ */
+void walk_ahead(const char *path);
+
 #endif
