@@ -5,6 +5,9 @@
 #include <stdatomic.h>
 #include <time.h>
 
+/* Null where no library that is linked uses OpenMP. */
+[[gnu::weak]] void omp_set_num_threads(int threads);
+
 enum {
     MOST = 64,       /* threads */
     SPINS = 64,      /* pauses between two looks at the clock */
@@ -116,11 +119,17 @@ void ritz_team_meet(int threads)
 }
 
 /* Run by each started thread: it does its part of every task. A task of fewer
-   threads has no part for it. */
+   threads has no part for it. OpenMP has a number of threads for each thread,
+   and an OpenBLAS built with OpenMP asks for that of its caller only: without
+   the first call the BLAS would have several threads here and one in the thread
+   that runs the task, and its sums would depend on which of them works on an
+   item. */
 static void *serve_tasks(void *argument)
 {
     const int thread = (int)(intptr_t)argument;
 
+    if (omp_set_num_threads)
+        omp_set_num_threads(1);
     for (uint32_t seen = team.before[thread];; seen++) {
         await_change(&team.tasks, seen);
         if (thread < team.threads)

@@ -3,8 +3,9 @@
 #define RITZ_LINEAR_BLAS_THREADS_H
 
 /**
- * Set the number of threads of OpenBLAS, for the whole process. Does nothing if
- * the BLAS is not OpenBLAS.
+ * Set the number of threads of OpenBLAS, for the whole process; an OpenBLAS
+ * built with OpenMP uses it where the calling thread calls it, and one thread in
+ * threads that base/team.h starts. Does nothing if the BLAS is not OpenBLAS.
  *
  * @param[in] threads  0 changes nothing
  * @return the number before, to restore it by a second call; 0 if the BLAS is
