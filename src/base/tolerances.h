@@ -337,6 +337,10 @@
     {                                                                          \
         1e-8, 1e-7, 3e-7                                                       \
     }
+/* Two eigenvalues closer than this part of the largest one found are both
+   rounding, and modes are not counted between them: 64 eps, as for rigid modes.
+   Relative to each other computed zeros may be far apart. */
+#define RITZ_COUNT_ROUNDING 0x1p-46
 /* A mode this close to the value below which modes were counted, relative, may
    have been counted or not: rounding is eps times the largest eigenvalue, which
    is up to 1e-10 of a low one. A tenth of the least of RITZ_COUNT_ABOVE. */

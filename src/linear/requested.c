@@ -28,11 +28,15 @@ int64_t ritz_pairs_wanted(const ritz_pairs *P, const ritz_span *span,
 
 int64_t ritz_pairs_gap(const ritz_pairs *P, int64_t end)
 {
+    const int64_t count = P->Phi.ncol;
+    const double rounding =
+        count > 0 ? RITZ_COUNT_ROUNDING * fabs(P->lambda[count - 1]) : 0.0;
     double widest = 0.0;
     int64_t at = end;
 
-    for (int64_t k = end > 0 ? end : 1; k < P->Phi.ncol; k++) {
-        double gap = (P->lambda[k] - P->lambda[k - 1]) / fabs(P->lambda[k]);
+    for (int64_t k = end > 0 ? end : 1; k < count; k++) {
+        double gap = (P->lambda[k] - P->lambda[k - 1]) /
+                     fmax(fabs(P->lambda[k]), rounding);
 
         if (gap > widest) {
             widest = gap;

@@ -21,7 +21,7 @@ int64_t ritz_pairs_wanted(const ritz_pairs *P, const ritz_span *span,
                           double limit);
 
 /** The index k >= @p end with the widest relative gap between pairs k - 1 and
- * k: modes are counted below a value in that gap. */
+ * k, none of rounding: modes are counted below a value in that gap. */
 int64_t ritz_pairs_gap(const ritz_pairs *P, int64_t end);
 
 /** A value between eigenvalues k - 1 and k of @p P, at @p part (0 to 1) of the
