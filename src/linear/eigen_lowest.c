@@ -8,14 +8,10 @@
 #include "linear/requested.h"
 #include "linear/residuals.h"
 #include "linear/spectra.h"
+#include "linear/trial.h"
 
 #include <inttypes.h>
 #include <math.h>
-
-enum {
-    MEDIUM = 4000, /* dofs up to which LAPACK is used if more than a quarter of
-                      all modes are requested */
-};
 
 /* Every mode, so that none can be missing; from the store that is lent, if the
    pencil was solved before. */
@@ -79,6 +75,7 @@ static ritz_status find_lowest(const ritz_sparse *K, const ritz_sparse *M,
                                const ritz_span *span,
                                const ritz_factor_use *use, ritz_pairs *out)
 {
+    const ritz_trial *size = ritz_trial_here();
     const int64_t n = K->nrow;
 
     RITZ_CHECK(ritz_eigen_refuse(n, K->ncol, M->nrow, M->ncol));
@@ -89,7 +86,7 @@ static ritz_status find_lowest(const ritz_sparse *K, const ritz_sparse *M,
                    RITZ_ERR_ARGUMENT, "modes up to %g Hz cannot be asked for",
                    span->up_to_hz);
     RITZ_CHECK(ritz_eigen_refuse_accuracy(span));
-    if (n <= RITZ_EIGEN_SMALL || (n <= MEDIUM && span->modes > n / 4))
+    if (n <= size->small || (n <= size->medium && span->modes > n / 4))
         return by_lapack(K, M, span, out);
     return ritz_eigen_search(K, M, given, span, use, out);
 }

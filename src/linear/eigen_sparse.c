@@ -30,6 +30,7 @@
 #include "linear/residuals.h"
 #include "linear/sharpen.h"
 #include "linear/slices.h"
+#include "linear/trial.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -38,7 +39,6 @@
 #include <string.h>
 
 enum {
-    SMALL = RITZ_EIGEN_SMALL,
     ATTEMPTS = 12, /* changes of sigma, and requests for more */
     BODY = 6,      /* rigid modes of one free body */
     GUESS = 20,    /* flexible modes requested first if they are not counted */
@@ -46,7 +46,6 @@ enum {
                         + ROUGH_MORE modes for k, to have a gap to count in */
     ROUGH_MORE = 8,
     GUARD = 2,    /* substructures find k + k / GUARD + GUARD modes for k */
-    PLENTY = 20,  /* substructures are of use up to one mode in so many dofs */
     BEHIND = 2,   /* modes requested above those wanted: a gap to count in */
     SPARE = 4,    /* the same after a mode was missed */
     MISSES = 3,   /* searches repeated as a count found more modes */
@@ -72,6 +71,7 @@ typedef struct search {
     int64_t misses; /* how often the count found more */
     bool all;       /* found holds every finite mode */
     const engine *engine;
+    const ritz_trial *size;
     const ritz_factor_use *use; /* of the factor before the count, or NULL */
     ritz_pairs found;
     ritz_moments moments; /* of what found.Phi was before its last iteration;
@@ -269,7 +269,7 @@ static const engine rough = {.name = "block Lanczos",
 static ritz_status find_by_slices(search *s, ritz_dense *X, double **lambda,
                                   double *reach, ritz_lanczos_end *end)
 {
-    ritz_slicing slicing = {0};
+    ritz_slicing slicing = {.side = s->size->side};
     ritz_status status = RITZ_OK;
 
     *reach = HUGE_VAL;
@@ -295,13 +295,13 @@ static const engine sliced = {.name = "spectrum slices",
 static ritz_status find_by_amls(search *s, ritz_dense *X, double **lambda,
                                 double *reach, ritz_lanczos_end *end)
 {
-    ritz_substructuring how = {0};
+    ritz_substructuring how = {.leaf = s->size->leaf};
     const int64_t k = s->ask + s->ask / GUARD + GUARD;
     double last = 0.0;
 
     *reach = HUGE_VAL;
     *end = RITZ_LANCZOS_EXHAUSTED;
-    if (k < s->num_heavy / PLENTY) {
+    if (k < s->num_heavy / s->size->plenty) {
         RITZ_CHECK(ritz_density_reach(&s->S, k, &last));
         how.cutoff = s->S.sigma + RITZ_AMLS_CUTOFF * (last - s->S.sigma);
         RITZ_CHECK(ritz_amls_lowest(&s->S, k, &how, X, lambda, end));
@@ -323,10 +323,13 @@ static const engine engines[] = {
 };
 
 /* The engine of a span. With an accuracy block Lanczos ends earlier, and auto
-   takes it, as it was the fastest on all models measured. */
+   takes it, as it was the fastest on all models measured; a test may set another
+   engine for auto, but not where an accuracy is requested. */
 static const engine *engine_of(const ritz_span *span)
 {
-    const engine *e = &engines[span->engine];
+    const bool tried = span->engine == RITZ_EIGEN_AUTO && span->accuracy == 0.0;
+    const engine *e =
+        &engines[tried ? ritz_trial_here()->engine : span->engine];
 
     return span->accuracy > 0.0 && e->find == find_by_blocks ? &rough : e;
 }
@@ -416,7 +419,8 @@ static ritz_status find_pairs(search *s)
     if (!s->S.A)
         RITZ_CHECK(shift_near(s, s->S.sigma));
     ritz_pairs_free(&s->found);
-    s->all = s->all || s->num_heavy <= SMALL || s->ask + 21 > s->num_heavy;
+    s->all =
+        s->all || s->num_heavy <= s->size->small || s->ask + 21 > s->num_heavy;
     if (s->all)
         RITZ_CHECK(ritz_modes_condensed(&s->S, s->num_heavy, s->heavy, &X));
     else
@@ -658,6 +662,16 @@ static void name_engine(search *s)
              s->all ? "condensed LAPACK" : s->engine->name, error);
 }
 
+/* The largest relative error of eigenvalues, of an approximate engine. One that
+   a test has set for auto is to be as accurate as it can. */
+static double accuracy_of(const ritz_span *span)
+{
+    if (span->accuracy > 0.0)
+        return span->accuracy;
+    return span->engine == RITZ_EIGEN_AUTO ? RITZ_ACCURACY_LEAST
+                                           : RITZ_AMLS_ERROR;
+}
+
 ritz_status ritz_eigen_search(const ritz_sparse *K, const ritz_sparse *M,
                               const ritz_eigen_given *given,
                               const ritz_span *span, const ritz_factor_use *use,
@@ -667,8 +681,9 @@ ritz_status ritz_eigen_search(const ritz_sparse *K, const ritz_sparse *M,
     s = {.span = span,
          .S = {.K = K, .M = M},
          .engine = engine_of(span),
+         .size = ritz_trial_here(),
          .use = use,
-         .accuracy = span->accuracy > 0.0 ? span->accuracy : RITZ_AMLS_ERROR};
+         .accuracy = accuracy_of(span)};
     int64_t end = 0;
 
     s.settled = RITZ_ACCURACY_SETTLED * sqrt(s.accuracy);

@@ -54,10 +54,6 @@ typedef struct ritz_eigen_given {
         *M; /* the same as those of the search, which may be folded */
 } ritz_eigen_given;
 
-/** Number of dofs, or of dofs with mass, up to which LAPACK is faster than a
- * search. */
-enum { RITZ_EIGEN_SMALL = 600 };
-
 /**
  * ritz_eigen_sparse() without its cases for LAPACK and without its checks.
  *

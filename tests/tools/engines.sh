@@ -1,6 +1,6 @@
 #!/bin/sh
 # engines.sh FOLDER-OF-THE-TOOLS - with two threads every engine that finds modes
-# writes the same bytes in every run.
+# writes the same bytes in every run; and RITZ_TEST_ENGINE sets the engine.
 . "$(dirname "$0")/tap.sh"
 
 # A long block of bricks, 8208 dofs: enough for two threads of each engine, and a
@@ -22,4 +22,20 @@ for options in 'lanczos --modes 30' 'arpack --modes 8' 'slices --modes 300' \
     same '  the same bytes again' 1.h5 2.h5
 done
 
+# --- RITZ_TEST_ENGINE -------------------------------------------------------------
+
+works 'a membrane is made' /usr/bin/python3 -s "$here/slepc.py" membrane 22
+expect 0 '' ritz-import -q --stiffness m.K.mtx --mass m.M.mtx --dofs m.dofs \
+    --port corner=1:3 -o m.h5
+membrane='normal-modes --modes 24 m.h5'
+# shellcheck disable=SC2086 # words
+{
+    expect 0 'dense LAPACK' ritz-basis $membrane -o m.b.h5
+    for pair in lanczos:block arpack:ARPACK slices:spectrum amls:substructures; do
+        expect 0 "${pair#*:}" env RITZ_TEST_ENGINE=${pair%:*} \
+            ritz-basis $membrane -o m.b.h5
+    done
+    expect 0 'ARPACK' env RITZ_TEST_ENGINE=slices \
+        ritz-basis --engine arpack $membrane -o m.b.h5
+}
 echo "1..$count"
