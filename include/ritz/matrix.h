@@ -400,6 +400,10 @@ typedef struct ritz_pairs {
     double *lambda;   /* k, ascending, as computed  [rad^2/s^2] */
     double *residual; /* k, |K x - lambda M x| / | |K||x| + |lambda||M||x| |,
                          |K| and |x| taken entry by entry */
+    double *error; /* k, bounds of the relative errors of lambda, which is not
+                      below the eigenvalue; that of a rigid-body motion is
+                      relative to the first flexible one. NULL: errors are as
+                      small as the residuals allow */
     int64_t num_rigid; /* the first of them are rigid-body motions */
     double sigma;      /* shift that was used  [rad^2/s^2] */
     double proven_to; /* no mode is missing below  [rad^2/s^2]; NaN: unproven */
@@ -440,8 +444,9 @@ typedef struct ritz_span {
  * With an accuracy, and with RITZ_EIGEN_AMLS, residuals are not limited;
  * `engine` of the pairs states a bound of the errors of eigenvalues, and the
  * values are upper bounds. Small pencils are always solved by LAPACK, to
- * rounding. If substructures would be nearly as large as the model, or do not
- * converge, spectrum slices find the pairs to rounding.
+ * rounding. If substructures would be nearly as large as the model, do not
+ * converge or miss a mode, spectrum slices find the pairs to rounding; block
+ * Lanczos does if residuals of slices or of ARPACK stay above their limit.
  *
  * @return RITZ_ERR_ARGUMENT if the span is not one, or if an accuracy is
  *         requested of an engine that finds eigenvalues to rounding only;

@@ -261,25 +261,22 @@ static void sum_pairs(const assessor *a, const ritz_dense *X,
 ritz_status assessor_residuals(const assessor *a, Mat X, ritz_pairs *P,
                                double *energy, double *worst)
 {
-    RITZ_OWN_ARRAY double *total = NULL;
-    double scale = 0.0;
+    RITZ_OWN_ARRAY double *total = NULL, *size = NULL;
     ritz_dense x;
 
     RANKS_CHECK_NEW(total, SUMS * P->Phi.ncol);
+    RANKS_CHECK_NEW(size, P->Phi.ncol);
     x = block_take(X);
     sum_pairs(a, &x, P, total);
     block_return(X, &x);
-    *worst = 0.0;
     for (int64_t j = 0; j < P->Phi.ncol; j++) {
         const double *s = total + SUMS * j;
 
-        P->residual[j] = s[SIZE] == 0.0 ? 0.0 : sqrt(s[GAP] / s[SIZE]);
-        if (!isnan(*worst) && !(P->residual[j] <= *worst))
-            *worst = P->residual[j];
+        P->residual[j] = sqrt(s[GAP]);
+        size[j] = sqrt(s[SIZE]);
         energy[j] = s[ENERGY];
-        scale = fmax(scale, energy[j]);
     }
-    P->num_rigid = ritz_eigen_rigid(P->Phi.ncol, P->lambda, scale);
+    ritz_pairs_relate(P, size, energy, worst);
     return RITZ_OK;
 }
 

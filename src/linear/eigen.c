@@ -86,7 +86,7 @@ double ritz_eigen_lambda(double hertz)
 void ritz_pairs_free(ritz_pairs *pairs)
 {
     ritz_dense_free(&pairs->Phi);
-    RITZ_FREE(pairs->lambda, pairs->residual);
+    RITZ_FREE(pairs->lambda, pairs->residual, pairs->error);
     *pairs = (ritz_pairs){0};
 }
 
@@ -104,6 +104,8 @@ ritz_status ritz_pairs_copy(const ritz_pairs *from, int64_t count,
     RITZ_CHECK(ritz_dense_copy(&Phi, &copy.Phi));
     RITZ_CHECK_COPY(copy.lambda, from->lambda, count);
     RITZ_CHECK_COPY(copy.residual, from->residual, count);
+    if (from->error)
+        RITZ_CHECK_COPY(copy.error, from->error, count);
     memcpy(copy.engine, from->engine, sizeof copy.engine);
     RITZ_MOVE(*out, copy);
     return RITZ_OK;

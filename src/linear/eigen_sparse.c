@@ -3,9 +3,12 @@
  *
  *     find     Lanczos on (K - sigma M)^-1 M. sigma is 0 if the caller has a
  *              factor of K; otherwise sigma < 0, as K of a free body is singular
- *     polish   inverse iteration and Rayleigh-Ritz on what was found
+ *     polish   inverse iteration and Rayleigh-Ritz on what was found; if the
+ *              residuals stay too large, block Lanczos finds the pairs anew
  *     prove    Sylvester: K - tau M has as many negative pivots as there are
- *              eigenvalues below tau
+ *              eigenvalues below tau. If exactly m are below a frequency, these
+ *              are the m lowest pairs, even if an approximate value of one of
+ *              them is above it
  *
  * sigma is a guess until modes are known. If it is much farther from the lowest
  * flexible eigenvalue than the requested ones are, theta of all of them are
@@ -76,7 +79,7 @@ typedef struct search {
     ritz_pairs found;
     ritz_moments moments; /* of what found.Phi was before its last iteration;
                              empty unless the engine is approximate */
-    double counted_at;    /* the last count was of modes below this */
+    double counted_at;    /* modes were counted below this, or are to be */
     double error;         /* bound of relative errors of eigenvalues */
     double accuracy;      /* its limit */
     double settled;       /* residual at which pairs of block Lanczos have
@@ -334,40 +337,96 @@ static const engine *engine_of(const ritz_span *span)
     return span->accuracy > 0.0 && e->find == find_by_blocks ? &rough : e;
 }
 
-/* Index of the pair below which modes are counted. An approximate engine counts
-   among the additional modes: bounds of eigenvalues far below a count are
-   narrower. */
-static int64_t gap_to_count(const search *s, int64_t end)
+/* Whether s->found is of an engine that finds eigenvalues approximately. */
+static bool is_approximate(const search *s)
 {
-    const int64_t count = s->found.Phi.ncol;
+    return !s->all && s->engine->approximate;
+}
+
+/* How many of the pairs found were requested, by their values. Of approximate
+   values up to a frequency these are as many as were counted below it: values
+   are upper bounds, and one of them may be above the frequency. */
+static int64_t end_by_value(const search *s)
+{
+    const ritz_pairs *P = &s->found;
+
+    if (!is_approximate(s) || s->span->modes >= 0 || s->span->uncounted)
+        return ritz_pairs_wanted(P, s->span, s->limit);
+    return ritz_pairs_whole(P,
+                            s->target < P->Phi.ncol ? s->target : P->Phi.ncol);
+}
+
+/* Whether eigenvalue j of an approximate engine may be below the limit. */
+static bool may_be_below(const search *s, int64_t j)
+{
+    const ritz_pairs *P = &s->found;
+
+    return j < P->num_rigid || P->lambda[j] * (1.0 - P->error[j]) <= s->limit;
+}
+
+/* How many of the pairs found were requested. Without a count, all that may be
+   below a frequency are, as far as there are bounds: up to pair `at`. */
+static int64_t end_requested(const search *s, int64_t at)
+{
+    int64_t end = end_by_value(s);
+
+    if (!is_approximate(s) || s->span->modes >= 0 || !s->span->uncounted)
+        return end;
+    while (end < at && may_be_below(s, end))
+        end++;
+    return ritz_pairs_whole(&s->found, end);
+}
+
+/* Index of the pair below which modes are counted. An approximate engine counts
+   among the last of the additional modes, unless these are one cluster: bounds
+   of eigenvalues far below a count are narrower. */
+static int64_t gap_to_count(const search *s)
+{
+    const ritz_pairs *P = &s->found;
+    const int64_t end = end_by_value(s);
+    int64_t at = end;
 
     if (s->all)
         return end;
-    return ritz_pairs_gap(
-        &s->found, s->engine->approximate ? end + (count - end) / 2 : end);
+    if (s->engine->approximate)
+        at = ritz_pairs_gap(P, end + (P->Phi.ncol - end) / 2);
+    return at > end && !ritz_pairs_clustered(P, at) ? at
+                                                    : ritz_pairs_gap(P, end);
 }
 
-/* s->error := bound of errors of the first `end` pairs, if exactly `count`
-   eigenvalues are below tau. */
-static ritz_status bound_error(search *s, int64_t end, int64_t count,
-                               double tau)
+/* Bounds of errors of all pairs, if exactly `at` eigenvalues are below
+   s->counted_at. *error := the largest of the pairs requested, infinite if
+   s->counted_at is an eigenvalue. */
+static ritz_status bound_errors(search *s, int64_t at, double *error)
 {
-    return ritz_pairs_bound(&s->found, &s->moments, s->S.sigma, tau, count, end,
-                            &s->error);
+    const ritz_status status =
+        ritz_pairs_bound(&s->found, &s->moments, s->S.sigma, s->counted_at, at);
+
+    *error = HUGE_VAL;
+    if (status == RITZ_ERR_SINGULAR)
+        return RITZ_OK;
+    RITZ_CHECK(status);
+    *error = 0.0;
+    for (int64_t j = 0; j < end_requested(s, at); j++)
+        *error = fmax(*error, s->found.error[j]);
+    return RITZ_OK;
 }
 
-/* s->error := bound of errors of the pairs requested, if no mode is missing among
-   the pairs found. */
-static ritz_status assess_pairs(search *s)
+/* *error := bound of errors of the pairs requested, if no mode is missing among
+   the pairs found; 0 if more pairs are needed first. */
+static ritz_status assess_pairs(search *s, double *error)
 {
     ritz_pairs *P = &s->found;
-    int64_t end = 0, at = 0;
+    int64_t at = 0;
     double worst = 0.0;
 
+    *error = 0.0;
     RITZ_CHECK(ritz_pairs_assess(s->S.K, s->S.M, P, NULL, &worst));
-    end = ritz_pairs_wanted(P, s->span, s->limit);
-    at = gap_to_count(s, end);
-    return bound_error(s, end, at, ritz_pairs_between(P, at, 0.5));
+    if (end_by_value(s) >= P->Phi.ncol)
+        return RITZ_OK;
+    at = gap_to_count(s);
+    s->counted_at = ritz_pairs_between(P, at, 0.5);
+    return bound_errors(s, at, error);
 }
 
 /* Have the search repeated with smaller residuals, and to rounding as soon as
@@ -380,6 +439,16 @@ static void search_finer(search *s)
     s->ask += s->ask / ROUGH_PART + ROUGH_MORE;
 }
 
+/* After an approximate engine whose errors are too large, or that missed a
+   mode. */
+static void search_better(search *s)
+{
+    if (s->engine->bounded)
+        search_finer(s);
+    else
+        s->engine = &sliced;
+}
+
 /* Inverse iterations until the bound of errors is small, or only the bound if
    the engine sets the moments itself. If it stays too large, s->found is empty,
    and the next search has smaller residuals or goes by slices. */
@@ -387,6 +456,7 @@ static ritz_status improve_pairs(search *s, ritz_dense *X, double **lambda)
 {
     const int steps = s->engine->bounded ? 1 : STEPS;
     ritz_pairs *P = &s->found;
+    double error = 0.0;
 
     RITZ_MOVE(P->Phi, *X);
     RITZ_MOVE(P->lambda, *lambda);
@@ -396,19 +466,32 @@ static ritz_status improve_pairs(search *s, ritz_dense *X, double **lambda)
         if (!s->engine->bounded)
             RITZ_CHECK(
                 ritz_vectors_polish(&s->S, &P->Phi, P->lambda, &s->moments));
-        RITZ_CHECK(assess_pairs(s));
-        if (s->error <= s->accuracy)
+        RITZ_CHECK(assess_pairs(s, &error));
+        if (error <= s->accuracy)
             return RITZ_OK;
     }
-    if (s->engine->bounded)
-        search_finer(s);
-    else
-        s->engine = &sliced;
+    search_better(s);
     ritz_pairs_free(P);
     return RITZ_OK;
 }
 
-/* Fill s->found; it is empty if sigma or the number asked had to change. */
+/* Pairs from the vectors that an engine found; without pairs, block Lanczos takes
+   over. */
+static ritz_status settle_pairs(search *s, ritz_dense *X, double **lambda)
+{
+    const ritz_status status = is_approximate(s) ? improve_pairs(s, X, lambda)
+                                                 : refine_pairs(s, X, lambda);
+
+    if (status != RITZ_ERR_CONVERGENCE || s->all ||
+        s->engine->find == find_by_blocks)
+        return status;
+    ritz_pairs_free(&s->found);
+    s->engine = &reliable;
+    return RITZ_OK;
+}
+
+/* Fill s->found; it is empty if sigma, the engine or the number asked had to
+   change. */
 static ritz_status find_pairs(search *s)
 {
     ritz_lanczos_end end = RITZ_LANCZOS_FOUND;
@@ -426,9 +509,7 @@ static ritz_status find_pairs(search *s)
     else
         RITZ_CHECK(s->engine->find(s, &X, &lambda, &reach, &end));
     if (end == RITZ_LANCZOS_FOUND)
-        RITZ_CHECK(!s->all && s->engine->approximate
-                       ? improve_pairs(s, &X, &lambda)
-                       : refine_pairs(s, &X, &lambda));
+        RITZ_CHECK(settle_pairs(s, &X, &lambda));
     if (end == RITZ_LANCZOS_SLOW)
         RITZ_CHECK(shift_elsewhere(s, reach));
     if (end == RITZ_LANCZOS_EXHAUSTED)
@@ -489,14 +570,15 @@ static ritz_status count_below(search *s, int64_t k, int64_t *out)
     return status;
 }
 
-/* Request `more` modes, which were missed or are needed to find a gap. */
-static ritz_status ask_more(search *s, int64_t more)
+/* After a count: `missed` modes below lambda were not found. */
+static ritz_status search_missed(search *s, int64_t missed, double lambda)
 {
-    double hertz = ritz_eigen_hertz(s->found.lambda[s->found.Phi.ncol - 1]);
-
-    RITZ_REFUSE_IF(s->all || s->misses > MISSES, RITZ_ERR_CONVERGENCE,
-                   "%" PRId64 " modes below %g Hz are not found", more, hertz);
-    s->ask += more + SPARE;
+    RITZ_REFUSE_IF(s->all || ++s->misses > MISSES, RITZ_ERR_CONVERGENCE,
+                   "%" PRId64 " modes below %g Hz are not found", missed,
+                   ritz_eigen_hertz(lambda));
+    if (s->engine->approximate)
+        search_better(s);
+    s->ask += missed + SPARE;
     return RITZ_OK;
 }
 
@@ -508,37 +590,47 @@ static ritz_status lend_factor(const search *s, int64_t end)
     return s->use->call(s->use->of, &s->found, end, s->S.A, s->S.sigma);
 }
 
+/* Count the modes below a value behind the first `end` pairs: whether none of
+   them is missed. */
+static ritz_status prove_lowest(search *s, int64_t end, bool *done)
+{
+    const int64_t at = gap_to_count(s);
+    int64_t count = at;
+
+    RITZ_CHECK(lend_factor(s, end));
+    if (s->found.Phi.ncol > 0 && !s->span->uncounted)
+        RITZ_CHECK(count_below(s, at, &count));
+    RITZ_REFUSE_IF(count < at, RITZ_ERR_CONVERGENCE,
+                   "%" PRId64 " modes were found where there are %" PRId64, at,
+                   count);
+    *done = count == at;
+    if (!*done)
+        return search_missed(s, count - at, s->counted_at);
+    if (!is_approximate(s))
+        return RITZ_OK;
+    RITZ_CHECK(bound_errors(s, at, &s->error));
+    *done = s->error <= s->accuracy;
+    if (!*done)
+        search_better(s);
+    return RITZ_OK;
+}
+
 /* By number: whether all modes are found, and none below them is missed. */
 static ritz_status prove_number(search *s, int64_t *end, bool *done)
 {
     const ritz_pairs *P = &s->found;
-    int64_t count = 0;
-    int64_t at = 0;
 
     *end = ritz_pairs_wanted(P, s->span, 0.0);
     if (*end >= P->Phi.ncol && !s->all) {
         s->ask += P->num_rigid + SPARE; /* no flexible mode was found yet */
         return RITZ_OK;
     }
-    RITZ_CHECK(lend_factor(s, *end));
-    at = gap_to_count(s, *end);
-    count = at;
-    if (P->Phi.ncol > 0 && !s->span->uncounted)
-        RITZ_CHECK(count_below(s, at, &count));
-    RITZ_REFUSE_IF(count < at, RITZ_ERR_CONVERGENCE,
-                   "%" PRId64 " modes were found where there are %" PRId64, at,
-                   count);
-    *done = count == at;
     s->found.proven_to = P->Phi.ncol > 0
                              ? ritz_pairs_between(P, *end, RITZ_COUNT_PLACE)
                              : HUGE_VAL;
     if (s->span->uncounted)
         s->found.proven_to = (double)NAN;
-    if (!*done) {
-        s->misses++;
-        RITZ_CHECK(ask_more(s, count - at));
-    }
-    return RITZ_OK;
+    return prove_lowest(s, *end, done);
 }
 
 /* s->target := number of modes up to the frequency, or a guess if they are not
@@ -564,32 +656,50 @@ static ritz_status count_target(search *s)
     return status;
 }
 
-/* By frequency: are there as many as counted before? */
+/* By frequency, without a count: whether a pair above it was found. */
+static ritz_status end_uncounted(search *s, int64_t *end, bool *done)
+{
+    const int64_t count = s->found.Phi.ncol;
+    const int64_t at = is_approximate(s) ? gap_to_count(s) : count;
+
+    s->found.proven_to = (double)NAN;
+    *end = end_requested(s, at);
+    *done = *end < at || s->all;
+    s->ask *= *done ? 1 : 2;
+    s->error = 0.0;
+    for (int64_t j = 0; *done && s->found.error && j < *end; j++)
+        s->error = fmax(s->error, s->found.error[j]);
+    return *done ? lend_factor(s, *end) : RITZ_OK;
+}
+
+/* By frequency: are there as many as counted before? If values are approximate,
+   a second count among the additional modes shows that none of the lowest is
+   missed. */
 static ritz_status prove_frequency(search *s, int64_t *end, bool *done)
 {
     const ritz_pairs *P = &s->found;
     int64_t below = 0;
 
-    while (!s->span->uncounted && ritz_pairs_unclear(P, s->limit))
+    if (s->span->uncounted)
+        return end_uncounted(s, end, done);
+    while (ritz_pairs_unclear(P, s->limit))
         RITZ_CHECK(count_target(s));
     while (below < P->Phi.ncol && P->lambda[below] <= s->limit)
         below++;
-    *end = ritz_pairs_wanted(P, s->span, s->limit);
-    if (s->span->uncounted) {
-        s->found.proven_to = (double)NAN;
-        *done = below < P->Phi.ncol || s->all;
-        s->ask *= *done ? 1 : 2;
-        return *done ? lend_factor(s, *end) : RITZ_OK;
-    }
     RITZ_REFUSE_IF(below > s->target, RITZ_ERR_CONVERGENCE,
                    "%" PRId64 " modes were found where there are %" PRId64,
                    below, s->target);
-    *done = below == s->target;
+    *end = end_by_value(s);
     s->found.proven_to = s->limit;
-    if (*done)
-        return lend_factor(s, *end);
-    s->misses++;
-    return ask_more(s, s->target - below);
+    if (is_approximate(s) && *end < P->Phi.ncol)
+        return prove_lowest(s, *end, done);
+    if (is_approximate(s)) {
+        s->ask += SPARE; /* a cluster ends beyond the pairs found */
+        return RITZ_OK;
+    }
+    *done = below == s->target;
+    return *done ? lend_factor(s, *end)
+                 : search_missed(s, s->target - below, s->limit);
 }
 
 /* Search until the pairs that were found are proven to be all; *end of them
@@ -617,23 +727,6 @@ static ritz_status search_proven(search *s, int64_t *end)
     return RITZ_OK;
 }
 
-/* The bound of errors, which needs a count among the additional modes. A search
-   by number has made it; one by frequency has counted at its limit only. */
-static ritz_status settle_error(search *s, int64_t end)
-{
-    const int64_t at = gap_to_count(s, end);
-    int64_t count = at;
-
-    if (s->span->modes < 0 && !s->span->uncounted)
-        RITZ_CHECK(count_below(s, at, &count));
-    RITZ_REFUSE_IF(count != at, RITZ_ERR_CONVERGENCE,
-                   "%" PRId64 " modes were found where there are %" PRId64, at,
-                   count);
-    if (s->span->uncounted)
-        s->counted_at = ritz_pairs_between(&s->found, at, 0.5);
-    return bound_error(s, end, at, s->counted_at);
-}
-
 /* With a factor of K there are no rigid modes, and sigma = 0 is kept. */
 static ritz_status begin_search(search *s)
 {
@@ -654,7 +747,7 @@ static void name_engine(search *s)
 {
     char error[48] = "";
 
-    if (!s->all && s->engine->approximate) /* rounded up */
+    if (is_approximate(s)) /* rounded up */
         snprintf(error, sizeof error, ", eigenvalues within %.1e%s",
                  1.05 * s->error,
                  s->span->uncounted ? " if none is missed" : "");
@@ -681,21 +774,20 @@ ritz_status ritz_eigen_search(const ritz_sparse *K, const ritz_sparse *M,
     s = {.span = span,
          .S = {.K = K, .M = M},
          .engine = engine_of(span),
-         .size = ritz_trial_here(),
+         .size = given && given->size ? given->size : ritz_trial_here(),
          .use = use,
          .accuracy = accuracy_of(span)};
     int64_t end = 0;
 
     s.settled = RITZ_ACCURACY_SETTLED * sqrt(s.accuracy);
     if (given) {
-        RITZ_MOVE(s.S.A, *given->L);
+        if (given->L)
+            RITZ_MOVE(s.S.A, *given->L);
         s.own[0] = given->K;
         s.own[1] = given->M;
     }
     RITZ_CHECK(begin_search(&s));
     RITZ_CHECK(search_proven(&s, &end));
-    if (!s.all && s.engine->approximate)
-        RITZ_CHECK(settle_error(&s, end));
     ritz_pairs_truncate(&s.found, end);
     ritz_dense_orient(&s.found.Phi);
     s.found.sigma = s.S.sigma;

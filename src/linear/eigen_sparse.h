@@ -3,6 +3,8 @@
 #ifndef RITZ_LINEAR_EIGEN_SPARSE_H
 #define RITZ_LINEAR_EIGEN_SPARSE_H
 
+#include "linear/trial.h"
+
 #include <ritz/matrix.h>
 
 /**
@@ -49,9 +51,10 @@ ritz_status ritz_eigen_lending(const ritz_sparse *K, const ritz_sparse *M,
 
 /** What the caller of a search hands over to it. */
 typedef struct ritz_eigen_given {
-    ritz_factor **L; /* a factor of K, which is taken over */
+    ritz_factor **L; /* a factor of K, which is taken over; NULL: none */
     ritz_sparse *K,
-        *M; /* the same as those of the search, which may be folded */
+        *M; /* the same as those of the search, which may be folded; NULL */
+    const ritz_trial *size; /* of a test; NULL: that of ritz_trial_here() */
 } ritz_eigen_given;
 
 /**

@@ -115,20 +115,22 @@ ritz_status ritz_moments_enclose(const ritz_moments *moments, double sigma,
     return RITZ_OK;
 }
 
-ritz_status ritz_pairs_bound(const ritz_pairs *P, const ritz_moments *moments,
-                             double sigma, double tau, int64_t count,
-                             int64_t end, double *out)
+ritz_status ritz_pairs_bound(ritz_pairs *P, const ritz_moments *moments,
+                             double sigma, double tau, int64_t count)
 {
     RITZ_OWN_ARRAY double *lower = NULL;
 
     RITZ_CHECK_NEW(lower, count);
     RITZ_CHECK(ritz_moments_enclose(moments, sigma, tau, count, lower));
-    *out = 0.0;
-    for (int64_t j = 0; j < end; j++) {
+    if (!P->error)
+        RITZ_CHECK_NEW(P->error, P->Phi.ncol);
+    for (int64_t j = 0; j < P->Phi.ncol; j++) {
         const int64_t unit = j < P->num_rigid ? P->num_rigid : j;
         const double scale = unit < P->Phi.ncol ? P->lambda[unit] : tau;
 
-        *out = fmax(*out, (P->lambda[j] - lower[j]) / fabs(scale));
+        P->error[j] = j < count
+                          ? fmax(0.0, (P->lambda[j] - lower[j]) / fabs(scale))
+                          : HUGE_VAL;
     }
     return RITZ_OK;
 }

@@ -44,19 +44,17 @@ ritz_status ritz_moments_enclose(const ritz_moments *moments, double sigma,
                                  double tau, int64_t count, double *lower);
 
 /**
- * Bound of the relative errors of the first @p end eigenvalues of P, @p end at
- * most @p count. That of a rigid-body mode is relative to the first flexible
- * eigenvalue.
+ * Bounds of the relative errors of the eigenvalues of P. That of a rigid-body
+ * mode is relative to the first flexible eigenvalue.
  *
- * @param[in]  P        upper bounds of eigenvalues
+ * @param[in,out] P     upper bounds of eigenvalues; P->error is set: infinite
+ *                      from the @p count-th on, and where the vectors give none
  * @param[in]  moments  of the vectors of P, or of these before an inverse
  *                      iteration
  * @param[in]  tau, count  as for ritz_moments_enclose()
- * @param[out] out      infinite if an eigenvalue has no lower bound
  * @return as ritz_moments_enclose()
  */
-ritz_status ritz_pairs_bound(const ritz_pairs *P, const ritz_moments *moments,
-                             double sigma, double tau, int64_t count,
-                             int64_t end, double *out);
+ritz_status ritz_pairs_bound(ritz_pairs *P, const ritz_moments *moments,
+                             double sigma, double tau, int64_t count);
 
 #endif

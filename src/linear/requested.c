@@ -10,6 +10,19 @@ static bool is_clustered(double a, double b)
     return fabs(b - a) <= RITZ_CLUSTER_GAP * fmax(fabs(a), fabs(b));
 }
 
+bool ritz_pairs_clustered(const ritz_pairs *P, int64_t k)
+{
+    return k > 0 && k < P->Phi.ncol &&
+           is_clustered(P->lambda[k - 1], P->lambda[k]);
+}
+
+int64_t ritz_pairs_whole(const ritz_pairs *P, int64_t end)
+{
+    while (ritz_pairs_clustered(P, end))
+        end++;
+    return end;
+}
+
 int64_t ritz_pairs_wanted(const ritz_pairs *P, const ritz_span *span,
                           double limit)
 {
@@ -19,11 +32,7 @@ int64_t ritz_pairs_wanted(const ritz_pairs *P, const ritz_span *span,
     if (span->modes < 0)
         for (end = P->num_rigid; end < count && P->lambda[end] <= limit;)
             end++;
-    end = end < count ? end : count;
-    while (end > 0 && end < count &&
-           is_clustered(P->lambda[end - 1], P->lambda[end]))
-        end++;
-    return end;
+    return ritz_pairs_whole(P, end < count ? end : count);
 }
 
 int64_t ritz_pairs_gap(const ritz_pairs *P, int64_t end)

@@ -20,9 +20,15 @@
 int64_t ritz_pairs_wanted(const ritz_pairs *P, const ritz_span *span,
                           double limit);
 
+/** @p end, or the end of the cluster that it would cut. */
+int64_t ritz_pairs_whole(const ritz_pairs *P, int64_t end);
+
 /** The index k >= @p end with the widest relative gap between pairs k - 1 and
  * k, none of rounding: modes are counted below a value in that gap. */
 int64_t ritz_pairs_gap(const ritz_pairs *P, int64_t end);
+
+/** Whether eigenvalues k - 1 and k of @p P belong to one cluster. */
+bool ritz_pairs_clustered(const ritz_pairs *P, int64_t k);
 
 /** A value between eigenvalues k - 1 and k of @p P, at @p part (0 to 1) of the
  * way; below the first one if k is 0, above the last one if k is their number. */

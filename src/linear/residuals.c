@@ -101,9 +101,10 @@ static void assess_rows(int thread, int64_t from, int64_t to, void *task)
     a->sums[thread] = s;
 }
 
-/* Residuals of eight pairs, sqrt(gap / size), and their energies. */
-static void assess_eight(assessment *a, int threads, double *residual,
-                         double *energies)
+/* Of eight pairs: norms |K x - lambda M x| and | |K||x| + |lambda||M||x| |, and
+   energies. */
+static void assess_eight(assessment *a, int threads, double *gaps,
+                         double *sizes, double *energies)
 {
     ritz_team_over(threads, a->K->nrow, assess_rows, a);
     for (int64_t c = 0; c < a->of.count; c++) {
@@ -117,7 +118,29 @@ static void assess_eight(assessment *a, int threads, double *residual,
             energy += a->sums[t].energy[c];
         }
         energies[c] = energy;
-        residual[c] = size == 0.0 ? 0.0 : sqrt(gap / size);
+        gaps[c] = sqrt(gap);
+        sizes[c] = sqrt(size);
+    }
+}
+
+void ritz_pairs_relate(ritz_pairs *P, const double *size, const double *energy,
+                       double *worst)
+{
+    double most = 0.0;
+    double scale = 0.0;
+
+    for (int64_t j = 0; j < P->Phi.ncol; j++) {
+        most = fmax(most, size[j]);
+        scale = fmax(scale, energy[j]);
+    }
+    P->num_rigid = ritz_eigen_rigid(P->Phi.ncol, P->lambda, scale);
+    *worst = 0.0;
+    for (int64_t j = 0; j < P->Phi.ncol; j++) {
+        const double by = j < P->num_rigid ? most : size[j];
+
+        P->residual[j] = by == 0.0 ? 0.0 : P->residual[j] / by;
+        if (!isnan(*worst) && !(P->residual[j] <= *worst))
+            *worst = P->residual[j];
     }
 }
 
@@ -140,30 +163,25 @@ ritz_status ritz_pairs_assess(const ritz_sparse *K, const ritz_sparse *M,
     RITZ_OWN_ARRAY double *x = NULL;
     RITZ_OWN_ARRAY sums *of = NULL;
     assessment a = {.K = K, .M = M, .unit = unit_of(K, M)};
-    RITZ_OWN_ARRAY double *own = NULL;
-    double scale = 0.0;
+    RITZ_OWN_ARRAY double *own = NULL, *size = NULL;
 
     RITZ_CHECK_NEW(x, K->nrow * WIDTH);
+    RITZ_CHECK_NEW(size, P->Phi.ncol);
     RITZ_CHECK_NEW(of, threads);
     if (!energy) {
         RITZ_CHECK_NEW(own, P->Phi.ncol);
         energy = own;
     }
     a.sums = of;
-    *worst = 0.0;
     for (int64_t first = 0; first < P->Phi.ncol; first += WIDTH) {
         a.of = next_eight(&P->Phi, first, x, threads);
         memset(a.lambda, 0, sizeof a.lambda);
         memcpy(a.lambda, P->lambda + first,
                (size_t)a.of.count * sizeof *a.lambda);
-        assess_eight(&a, threads, P->residual + first, energy + first);
+        assess_eight(&a, threads, P->residual + first, size + first,
+                     energy + first);
     }
-    for (int64_t j = 0; j < P->Phi.ncol; j++) {
-        scale = fmax(scale, energy[j]);
-        if (!isnan(*worst) && !(P->residual[j] <= *worst))
-            *worst = P->residual[j];
-    }
-    P->num_rigid = ritz_eigen_rigid(P->Phi.ncol, P->lambda, scale);
+    ritz_pairs_relate(P, size, energy, worst);
     return RITZ_OK;
 }
 

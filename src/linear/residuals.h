@@ -7,7 +7,9 @@
 
 /**
  * Compute the residual of each pair, | K x - lambda M x | divided by
- * | |K||x| + |lambda||M||x| |, and how many pairs are rigid-body modes.
+ * | |K||x| + |lambda||M||x| |, and how many pairs are rigid-body modes. That of
+ * a rigid-body mode is divided by the largest such norm of all pairs: in the
+ * motion of a mass that no stiffness holds, |K||x| is itself rounding.
  *
  * @param[in]     K, M   n x n, symmetric, both triangles stored
  * @param[in,out] P      Phi and lambda are read; residual, one number for each
@@ -20,6 +22,17 @@
  */
 ritz_status ritz_pairs_assess(const ritz_sparse *K, const ritz_sparse *M,
                               ritz_pairs *P, double *energy, double *worst);
+
+/**
+ * The last step of ritz_pairs_assess(): how many pairs are rigid-body modes, and
+ * their residuals.
+ *
+ * @param[in,out] P       residual is |K x - lambda M x| on entry
+ * @param[in]     size    | |K||x| + |lambda||M||x| | of each pair
+ * @param[in]     energy  |x|'|K||x| of each pair
+ */
+void ritz_pairs_relate(ritz_pairs *P, const double *size, const double *energy,
+                       double *worst);
 
 /**
  * R = K X - M X diag(lambda), and |x|'|K||x| and |x|'|M||x| of each column x of

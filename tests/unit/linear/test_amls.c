@@ -402,6 +402,46 @@ static void a_search_states_how_large_errors_are(void **state)
         check_search(&way[k]);
 }
 
+/* Modes up to a frequency that is above mode `last` of the cube by 1e-8 of it,
+   which is far less than the error of its value. The cube has a gap above that
+   mode. */
+static void check_limit(ritz_span span, int64_t last)
+{
+    RITZ_OWN(ritz_sparse) K = {0}, M = {0};
+    RITZ_OWN(ritz_pairs) P = {0};
+    double *exact = lattice_eigenvalues(12, 0.0);
+
+    while (exact[last + 1] - exact[last] < 1e-3 * exact[last])
+        last++;
+    span.modes = -1;
+    span.up_to_hz = ritz_eigen_hertz(exact[last]) * (1.0 + 1e-8);
+    lattice_new(12, 0.0, &K, &M);
+    assert_ok(ritz_eigen_sparse(&K, &M, &span, &P));
+    assert_non_null(strstr(P.engine, "within"));
+    assert_int_equal(P.Phi.ncol, last + 1);
+    for (int64_t j = 0; j <= last; j++)
+        assert_true(P.lambda[j] >= exact[j] * (1.0 - 1e-11));
+    free(exact);
+}
+
+/* An approximate value of such a mode is above the frequency. */
+static void a_mode_just_below_the_frequency_is_found(void **state)
+{
+    static const ritz_span way[] = {
+        {.engine = RITZ_EIGEN_AMLS},
+        {.engine = RITZ_EIGEN_AMLS, .accuracy = 1e-2},
+        {.engine = RITZ_EIGEN_AMLS, .uncounted = true},
+        {.engine = RITZ_EIGEN_LANCZOS, .accuracy = 1e-2},
+        {.engine = RITZ_EIGEN_LANCZOS, .accuracy = 1e-2, .uncounted = true},
+    };
+
+    (void)state;
+    for (size_t k = 0; k < sizeof way / sizeof *way; k++) {
+        check_limit(way[k], 17);
+        check_limit(way[k], 28);
+    }
+}
+
 static void check_refused(const ritz_span *span, const char *sentence)
 {
     RITZ_OWN(ritz_sparse) K = {0}, M = {0};
@@ -486,6 +526,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(eigenvalues_lie_within_their_bounds),
     cmocka_unit_test(the_number_of_eigenvalues_is_estimated),
     cmocka_unit_test(a_search_states_how_large_errors_are),
+    cmocka_unit_test(a_mode_just_below_the_frequency_is_found),
     cmocka_unit_test(engines_without_an_accuracy_refuse_one),
     cmocka_unit_test(slices_take_over_where_most_modes_are_requested),
     cmocka_unit_test(no_allocation_failure_leaks),
