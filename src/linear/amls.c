@@ -29,6 +29,7 @@
 #include "linear/amls.h"
 
 #include "base/alloc.h"
+#include "base/memory.h"
 #include "base/search.h"
 #include "base/team.h"
 #include "base/tolerances.h"
@@ -40,6 +41,7 @@
 #include <float.h>
 #include <lapacke.h>
 #include <math.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -50,6 +52,8 @@ enum {
     SHARES = 8,     /* a subtree for one thread has at most 1 / SHARES of the
                         operations that a thread has on average */
     THREADED = 8000, /* rows from which several threads gain */
+    RICH = 6, /* modes of substructures are about so many times those found, for
+                 the prediction of memory: measured */
 };
 
 /* A substructure, or an interface between substructures. */
@@ -81,9 +85,10 @@ typedef struct amls {
     front *front;      /* of each node */
     int64_t *job; /* subtrees, by their roots, that one thread eliminates */
     int64_t num_jobs;
-    double work;   /* operations to eliminate all fronts */
-    double least;  /* nu of modes kept are at least this */
-    int64_t order; /* of R */
+    double work;                 /* operations to eliminate all fronts */
+    double least;                /* nu of modes kept are at least this */
+    int64_t order;               /* of R */
+    _Atomic int64_t *eliminated; /* fronts, to show progress */
     int threads;
 } amls;
 
@@ -205,6 +210,42 @@ static ritz_status plan_fronts(amls *a, int64_t leaf, bool *wide)
     }
     choose_jobs(a);
     return RITZ_OK;
+}
+
+/*
+ * Numbers held at a time, about, if fronts are eliminated one after the other
+ * and keep modes in proportion to their rows: by a front and what its subtree
+ * leaves to it, then by the reduced matrix, and by the vectors.
+ */
+static double predict_numbers(const amls *a, int64_t k)
+{
+    const double rows = (double)a->S->K->nrow;
+    const double found = (double)k;
+    const double order = fmin(rows, RICH * found);
+    double held = 0.0;
+    double most = 0.0;
+
+    for (int64_t s = 0; s < a->tree.nodes; s++) {
+        const front *f = &a->front[s];
+        const int64_t *first = a->tree.first;
+        const double n = (double)f->n, b = (double)f->b;
+        const double part = order / rows;
+        const double below =
+            part * (double)(first[s] - first[a->tree.begin[s]]);
+
+        held += n * b + b * (2.0 * b + below + n);
+        most = fmax(most, held + n * (3.0 * n + 2.0 * b + below));
+        held += part * n * (n + below);
+        for (int64_t c = a->tree.begin[s]; c < s; c++)
+            if (a->tree.parent[c] == s) {
+                const double b_c = (double)a->front[c].b;
+
+                held -=
+                    b_c * (2.0 * b_c + (double)a->front[c].n +
+                           part * (double)(first[c] - first[a->tree.begin[c]]));
+            }
+    }
+    return fmax(most, held + order * (order + 3.0 * found) + rows * found);
 }
 
 /* --- elimination ---------------------------------------------------------- */
@@ -427,6 +468,8 @@ static ritz_status eliminate_front(const amls *a, int64_t s)
     front *f = &a->front[s];
     RITZ_OWN(blocks) B = {0};
 
+    /* other threads than the first show nothing */
+    ritz_monitor_step("substructures", (*a->eliminated)++, a->tree.nodes);
     RITZ_CHECK(assemble_front(a, s, &B));
     RITZ_CHECK(condense_front(f, &B));
     RITZ_CHECK(find_modes(a, f, &B));
@@ -474,7 +517,6 @@ static ritz_status eliminate_fronts(amls *a)
             s = a->job[--next];
             continue;
         }
-        ritz_monitor_step("substructures", s, a->tree.nodes);
         RITZ_CHECK(eliminate_front(a, s));
     }
     for (int64_t s = 0; s < a->tree.nodes; s++)
@@ -509,7 +551,10 @@ static ritz_status solve_reduced(const amls *a, int64_t k, double **theta,
     RITZ_OWN_ARRAY double *R = NULL;
     int64_t found = 0;
 
-    ritz_monitor_step("reduced matrix", 0, 0);
+    ritz_monitor_step("eigenvalues of the reduced matrix, order", a->order, 0);
+    RITZ_CHECK(
+        ritz_memory_admit("the matrix of substructure modes",
+                          a->order * (a->order + 2 * k) * (int64_t)sizeof *R));
     RITZ_CHECK_NEW(R, a->order * a->order);
     assemble_reduced(a, R);
     RITZ_CHECK(ritz_largest_pairs(a->order, R, k, 0.0, &found, theta, &Y->val));
@@ -575,6 +620,7 @@ static void expand_share(int thread, int threads, void *task)
          j += (int64_t)threads * COLUMNS) {
         const int64_t left = e->X->ncol - j;
 
+        ritz_monitor_step("vectors of substructures", j, e->X->ncol);
         expand_columns(e, j, left < COLUMNS ? left : COLUMNS,
                        e->room + thread * e->size);
     }
@@ -643,7 +689,8 @@ ritz_status ritz_amls_lowest(const ritz_shifted *S, int64_t k,
                              ritz_substructuring *how, ritz_dense *X,
                              double **lambda, ritz_lanczos_end *end)
 {
-    RITZ_OWN(amls) a = {.S = S};
+    _Atomic int64_t eliminated = 0;
+    RITZ_OWN(amls) a = {.S = S, .eliminated = &eliminated};
     ritz_blas_setting before = {0};
     ritz_status status = RITZ_OK;
     bool wide = false;
@@ -654,6 +701,9 @@ ritz_status ritz_amls_lowest(const ritz_shifted *S, int64_t k,
     *end = RITZ_LANCZOS_SLOW;
     if (wide)
         return RITZ_OK;
+    RITZ_CHECK(ritz_memory_admit("elimination of substructures",
+                                 (int64_t)predict_numbers(&a, k) *
+                                     (int64_t)sizeof(double)));
     before = ritz_blas_alone(a.work);
     status = find_lowest(&a, k, how, X, lambda, end);
     ritz_blas_restore(before);

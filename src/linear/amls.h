@@ -35,7 +35,8 @@ typedef struct ritz_substructuring {
  *                    divided, or if the k-th theta = 1 / (lambda - sigma) is
  *                    lost in the rounding of the first
  * @return RITZ_ERR_SINGULAR if K - sigma M is not positive definite;
- *         RITZ_ERR_CONVERGENCE; RITZ_ERR_MEMORY
+ *         RITZ_ERR_CONVERGENCE; RITZ_ERR_MEMORY, also if fronts and reduced
+ *         matrix would exceed the limit of memory, as far as is known before
  * @cost   some three Cholesky factors with fronts held dense, the modes of each
  *         front, and an eigenvalue problem of the order of all modes kept;
  *         memory of about a factor, and X

@@ -178,8 +178,10 @@ ritz_status ritz_density_reach(const ritz_shifted *S, int64_t k, double *out)
 
     RITZ_CHECK_NEW(list, (int64_t)VECTORS * STEPS);
     RITZ_CHECK(begin_vectors(S->M, &r));
-    for (int i = 0; i < STEPS; i++)
+    for (int i = 0; i < STEPS; i++) {
+        ritz_monitor_step("estimate of the number of modes", i, STEPS);
         RITZ_CHECK(advance_vectors(S, i, &r));
+    }
     for (int c = 0; c < VECTORS; c++)
         RITZ_CHECK(append_points(&r, c, &count, list));
     qsort(list, (size_t)count, sizeof *list, compare_points);

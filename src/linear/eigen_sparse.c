@@ -19,6 +19,7 @@
  */
 #include "linear/eigen_sparse.h"
 #include "base/alloc.h"
+#include "base/memory.h"
 #include "base/search.h"
 #include "base/tolerances.h"
 #include "linear/amls.h"
@@ -305,6 +306,10 @@ static ritz_status find_by_amls(search *s, ritz_dense *X, double **lambda,
     *reach = HUGE_VAL;
     *end = RITZ_LANCZOS_EXHAUSTED;
     if (k < s->num_heavy / s->size->plenty) {
+        /* X, M X and A^-1 M X of an inverse iteration */
+        RITZ_CHECK(
+            ritz_memory_admit("inverse iteration of substructure modes",
+                              3 * k * s->S.K->nrow * (int64_t)sizeof(double)));
         RITZ_CHECK(ritz_density_reach(&s->S, k, &last));
         how.cutoff = s->S.sigma + RITZ_AMLS_CUTOFF * (last - s->S.sigma);
         RITZ_CHECK(ritz_amls_lowest(&s->S, k, &how, X, lambda, end));
@@ -462,7 +467,6 @@ static ritz_status improve_pairs(search *s, ritz_dense *X, double **lambda)
     RITZ_MOVE(P->lambda, *lambda);
     RITZ_CHECK_NEW(P->residual, P->Phi.ncol);
     for (int k = 0; k < steps; k++) {
-        ritz_monitor_step("inverse iteration", k, 0);
         if (!s->engine->bounded)
             RITZ_CHECK(
                 ritz_vectors_polish(&s->S, &P->Phi, P->lambda, &s->moments));

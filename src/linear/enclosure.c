@@ -20,6 +20,10 @@
 #include <math.h>
 #include <string.h>
 
+/* Columns of an inverse iteration that are solved for at once: a multiple of the
+   width of a solve. */
+enum { STEP = 64 };
+
 void ritz_moments_free(ritz_moments *moments)
 {
     ritz_dense_free(&moments->first);
@@ -48,6 +52,19 @@ static void balance_projection(ritz_dense *A_r, ritz_dense *M_r, ritz_dense *Y)
     ritz_dense_symmetrise(A_r);
 }
 
+/* X := A^-1 X, a few columns at a time to show progress. */
+static ritz_status solve_in_steps(ritz_factor *A, ritz_dense *X)
+{
+    for (int64_t j = 0; j < X->ncol; j += STEP) {
+        ritz_dense part =
+            ritz_dense_part(X, j, X->ncol - j < STEP ? X->ncol - j : STEP);
+
+        ritz_monitor_step("inverse iteration", j, X->ncol);
+        RITZ_CHECK(ritz_factor_solve(A, &part));
+    }
+    return RITZ_OK;
+}
+
 /*
  * One inverse iteration and Rayleigh-Ritz: X becomes M-orthonormal, lambda
  * ascends.
@@ -66,7 +83,7 @@ ritz_status ritz_vectors_polish(const ritz_shifted *S, ritz_dense *X,
 
     RITZ_CHECK(ritz_sparse_mul(S->M, X, &MX));
     memcpy(X->val, MX.val, (size_t)(X->nrow * X->ncol) * sizeof *X->val);
-    RITZ_CHECK(ritz_factor_solve(S->A, X)); /* X is Y now */
+    RITZ_CHECK(solve_in_steps(S->A, X)); /* X is Y now */
     RITZ_CHECK(ritz_dense_mul_tn(X, &MX, &A_r));
     RITZ_CHECK(ritz_sparse_mul(S->M, X, &MY));
     RITZ_CHECK(ritz_dense_mul_tn(X, &MY, &M_r));

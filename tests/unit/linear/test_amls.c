@@ -247,6 +247,25 @@ static void indefinite_stiffness_is_refused(void **state)
     assert_null(lambda);
 }
 
+/* A cube of 1331 points: its fronts need more than 1 MiB. */
+static void fronts_that_do_not_fit_are_refused_before(void **state)
+{
+    RITZ_OWN(ritz_sparse) K = {0}, M = {0};
+    RITZ_OWN(ritz_dense) X = {0};
+    ritz_substructuring how = {.leaf = 30, .cutoff = 6.0};
+    double *lambda = NULL;
+    ritz_lanczos_end end = RITZ_LANCZOS_SLOW;
+
+    (void)state;
+    lattice_new(11, 0.0, &K, &M);
+    ritz_set_memory(1024 * 1024);
+    assert_fails(ritz_amls_lowest(&(ritz_shifted){.K = &K, .M = &M}, 20, &how,
+                                  &X, &lambda, &end),
+                 RITZ_ERR_MEMORY, "elimination of substructures needs ");
+    ritz_set_memory(0);
+    assert_int_equal(how.nodes, 0); /* nothing was eliminated */
+}
+
 /* --- bounds --------------------------------------------------------------- */
 
 static ritz_status prepare_shift(const pencil *p, ritz_shifted *S)
@@ -374,12 +393,13 @@ static void check_search(const ritz_span *span)
     assert_true((strstr(P.engine, "if none is missed") != NULL) ==
                 span->uncounted);
     assert_true(P.Phi.ncol >= count && P.Phi.ncol < count + 6);
+    assert_non_null(P.error);
     assert_true(stated_error(&P) <=
                 (span->accuracy > 0.0 ? span->accuracy : 1e-4));
     for (int64_t j = 0; j < P.Phi.ncol; j++) {
         assert_true(P.lambda[j] >= exact[j] * (1.0 - 1e-11));
-        assert_true(P.lambda[j] - exact[j] <=
-                    stated_error(&P) * P.lambda[j] + 1e-11);
+        assert_true(P.lambda[j] - exact[j] <= P.error[j] * P.lambda[j] + 1e-11);
+        assert_true(P.error[j] <= stated_error(&P));
     }
     free(exact);
 }
@@ -523,6 +543,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(zeros_in_one_triangle_couple_nothing),
     cmocka_unit_test(few_masses_exhaust_the_substructures),
     cmocka_unit_test(indefinite_stiffness_is_refused),
+    cmocka_unit_test(fronts_that_do_not_fit_are_refused_before),
     cmocka_unit_test(eigenvalues_lie_within_their_bounds),
     cmocka_unit_test(the_number_of_eigenvalues_is_estimated),
     cmocka_unit_test(a_search_states_how_large_errors_are),
