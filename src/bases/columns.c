@@ -48,6 +48,8 @@ void ritz_columns_label(const ritz_pairs *modes, ritz_column_kind kind,
         columns->kind[at + j] = kind;
         columns->hertz[at + j] = ritz_eigen_hertz(modes->lambda[j]);
         columns->residual[at + j] = modes->residual[j];
+        if (modes->error)
+            columns->error[at + j] = modes->error[j];
         if (j < modes->num_rigid)
             ritz_columns_label_rigid(at + j, columns);
     }

@@ -323,7 +323,7 @@ static ritz_status turn_columns(const ritz_free_set *set,
     for (int64_t j = G.ncol; j < G.ncol + modes->num_rigid; j++) {
         out->columns.kind[j] = RITZ_COLUMN_NORMAL; /* no longer a rigid
                                                       motion */
-        out->columns.hertz[j] = nan("");
+        out->columns.hertz[j] = out->columns.error[j] = nan("");
     }
     memcpy(out->origin.engine, modes->engine, sizeof out->origin.engine);
     return RITZ_OK;

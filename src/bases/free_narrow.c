@@ -182,8 +182,11 @@ static ritz_status label_columns(const narrowing *n, ritz_columns *columns)
 
         made.kind[p + i] = RITZ_COLUMN_NORMAL;
         made.residual[p + i] = wide->residual[k];
-        if (wide->kind[k] == RITZ_COLUMN_NORMAL)
-            made.hertz[p + i] = wide->hertz[k];
+        if (wide->kind[k] != RITZ_COLUMN_NORMAL)
+            continue;
+        made.hertz[p + i] = wide->hertz[k];
+        if (wide->error)
+            made.error[p + i] = wide->error[k];
     }
     RITZ_MOVE(*columns, made);
     return RITZ_OK;

@@ -202,6 +202,16 @@ const ritz_schema ritz_schema_io = {
 
 /* Columns of a basis. */
 
+static bool has_error(const void *object)
+{
+    const ritz_columns *columns = object;
+
+    for (int64_t j = 0; columns->error && j < columns->count; j++)
+        if (!isnan(columns->error[j]))
+            return true;
+    return false;
+}
+
 static const ritz_member columns_members[] = {
     {"columns/kind", SET_COLUMN_KINDS, RITZ_AT(ritz_columns, kind), "r",
      "kind of each column: rigid, constraint, normal, residual, system, "
@@ -216,6 +226,11 @@ static const ritz_member columns_members[] = {
     {"residuals", SET_REAL, RITZ_AT(ritz_columns, residual), "r",
      "relative residual of a column that is an eigenvector",
      .values = VALUES_OR_NAN},
+    {"error_bounds", SET_REAL, RITZ_AT(ritz_columns, error), "r",
+     "of engines that find modes approximately: bound of the relative error of "
+     "the eigenvalue (2 pi hertz)^2, which is too high by no more; of a rigid "
+     "motion relative to the first flexible eigenvalue",
+     .values = VALUES_OR_NAN, .optional = "", .has = has_error},
     {0},
 };
 

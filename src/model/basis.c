@@ -31,10 +31,11 @@ ritz_status ritz_columns_new(int64_t r, ritz_columns *out)
     RITZ_CHECK_NEW(columns.dof, r);
     RITZ_CHECK_NEW(columns.hertz, r);
     RITZ_CHECK_NEW(columns.residual, r);
+    RITZ_CHECK_NEW(columns.error, r);
     for (int64_t j = 0; j < r; j++) {
         columns.kind[j] = RITZ_COLUMN_NORMAL;
         columns.dof[j] = -1;
-        columns.hertz[j] = columns.residual[j] = nan("");
+        columns.hertz[j] = columns.residual[j] = columns.error[j] = nan("");
     }
     RITZ_MOVE(*out, columns);
     return RITZ_OK;
@@ -53,6 +54,8 @@ ritz_status ritz_columns_pick(const ritz_columns *columns, int64_t count,
         picked.dof[j] = columns->dof[k];
         picked.hertz[j] = columns->hertz[k];
         picked.residual[j] = columns->residual[k];
+        if (columns->error)
+            picked.error[j] = columns->error[k];
     }
     ritz_columns_free(out);
     RITZ_MOVE(*out, picked);
@@ -86,7 +89,8 @@ bool ritz_column_find(const char *name, ritz_column_kind *out)
 
 void ritz_columns_free(ritz_columns *columns)
 {
-    RITZ_FREE(columns->kind, columns->dof, columns->hertz, columns->residual);
+    RITZ_FREE(columns->kind, columns->dof, columns->hertz, columns->residual,
+              columns->error);
     *columns = (ritz_columns){0};
 }
 

@@ -65,6 +65,7 @@ static void say_basis(cli_run *run, const ritz_basis *basis)
         sink_add(run, "%g", c->residual[k]);
         worst = fmax(worst, c->residual[k]);
     }
+    sink_error_bounds(run, c);
     if (!isnan(worst)) {
         cli_say(run, "  %-14s %.1e relative, of the worst mode", "residual",
                 worst);

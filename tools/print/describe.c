@@ -327,6 +327,19 @@ static void describe_hankel(cli_run *run, const ritz_basis *b)
     sink_reals(run, "hankel_values", b->num_hankel, b->hankel);
 }
 
+void sink_error_bounds(cli_run *run, const ritz_columns *columns)
+{
+    bool any = false;
+
+    for (int64_t k = 0; columns->error && k < columns->count; k++)
+        any = any || !isnan(columns->error[k]);
+    if (!any)
+        return;
+    SINK_EACH(run, "error_bounds", k, columns->count)
+        if (!isnan(columns->error[k]))
+            sink_add(run, "%g", columns->error[k]);
+}
+
 ritz_status describe_basis(cli_run *run, const ritz_basis *b)
 {
     sink_field(run, "kind", "dofs,dofs_full", "basis of %ld columns for %ld %s",
@@ -342,6 +355,7 @@ ritz_status describe_basis(cli_run *run, const ritz_basis *b)
     SINK_EACH(run, "frequencies_hz", k, b->columns.count)
         if (!isnan(b->columns.hertz[k]))
             sink_add(run, "%g", b->columns.hertz[k]);
+    sink_error_bounds(run, &b->columns);
     return RITZ_OK;
 }
 

@@ -370,6 +370,10 @@ ritz_status describe_output(cli_run *run, const model *m);
 ritz_status describe_file(cli_run *run, const char *path, bool members,
                           bool directory);
 
+/** The list `error_bounds` of modes that were found approximately; without any
+ * there is no list. */
+void sink_error_bounds(cli_run *run, const ritz_columns *columns);
+
 /** Text form of a damping, and of a fit its coefficients and residual. */
 void describe_damping(cli_run *run, const char *text);
 void describe_dampers(cli_run *run, const ritz_dampers *dampers);

@@ -122,6 +122,9 @@ static void same_columns(const ritz_columns *a, const ritz_columns *b)
     assert_same(a->dof, b->dof, a->count, sizeof *a->dof);
     assert_same(a->hertz, b->hertz, a->count, sizeof *a->hertz);
     assert_same(a->residual, b->residual, a->count, sizeof *a->residual);
+    for (int64_t j = 0; j < a->count; j++)
+        assert_true(b->error && !isnan(a->error[j]) ? a->error[j] == b->error[j]
+                                                    : isnan(a->error[j]));
 }
 
 static void same_origin(const ritz_origin *a, const ritz_origin *b)
@@ -199,8 +202,10 @@ static void a_basis_comes_back(void **)
     RITZ_OWN(ritz_basis) a = {0}, b = {0};
 
     assert_ok(sample_basis(&a));
+    a.columns.error[0] = 4e-5;
     assert_ok(ritz_container_write_basis(path, &a, &stamp));
     assert_ok(ritz_container_read_basis(path, &b));
+    assert_non_null(b.columns.error);
     same_dense(&a.T, &b.T);
     same_columns(&a.columns, &b.columns);
     same_origin(&a.origin, &b.origin);
