@@ -258,7 +258,7 @@ static ritz_status refuse_free(const rank_work *w, modes *found)
     status = RITZ_ERR_SINGULAR;
     if (w->target)
         status = ritz_refuse_mechanism(w->target->request->component,
-                                       &w->target->interior, P, -1);
+                                       &w->target->interior, P, -1, 0);
     return ranks_agree(status);
 }
 
@@ -278,7 +278,7 @@ static ritz_status explain_singular(rank_work *w)
         return status;
     if (w->target)
         (void)ritz_refuse_mechanism(w->target->request->component,
-                                    &w->target->interior, NULL, -1);
+                                    &w->target->interior, NULL, -1, 0);
     return ranks_agree(RITZ_ERR_SINGULAR);
 }
 

@@ -441,17 +441,22 @@ static void name_dofs(const ritz_component *component, const ritz_dofs *i,
 
 ritz_status ritz_refuse_mechanism(const ritz_component *component,
                                   const ritz_dofs *i, const ritz_pairs *pairs,
-                                  int64_t weak)
+                                  int64_t weak, int64_t negative)
 {
     const int64_t num_rigid = pairs ? pairs->num_rigid : 0;
     char text[160] = "";
     char name[RITZ_DOF_NAME_SIZE];
 
-    if (num_rigid > 0)
+    if (num_rigid > 0 || (negative > 0 && pairs && pairs->Phi.ncol > 0))
         name_dofs(component, i, ritz_dense_col(&pairs->Phi, 0), text);
     else if (weak >= 0)
         snprintf(text, sizeof text, "%s",
                  ritz_dof_name(component->dof[i->at[weak]], name));
+    RITZ_REFUSE_IF(
+        negative > 0, RITZ_ERR_SINGULAR,
+        "not positive definite: with the attached dofs held, %" PRId64
+        " motion(s) have negative energy; largest at %s",
+        negative, text[0] ? text : "no dof in particular");
     RITZ_REFUSE_IF(pairs && num_rigid == 0 && pairs->Phi.ncol > 0 &&
                        pairs->lambda[0] < 0.0,
                    RITZ_ERR_SINGULAR,

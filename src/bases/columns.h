@@ -150,15 +150,17 @@ void ritz_remark_dampers(const ritz_request *request, int loads,
 
 /**
  * Refuse a stiffness that is not positive definite while the attached dofs are
- * held, and name the dofs that move freely.
+ * held, and name the dofs that move freely, or whose motion has negative energy.
  *
  * @param[in] i      rows of the component that K is of
  * @param[in] pairs  its rigid modes and the lowest others; NULL: not known
  * @param[in] weak   row of K that gave way, -1 if not known
+ * @param[in] negative  number of its negative eigenvalues beyond rounding, 0 if
+ *                      not known
  * @return RITZ_ERR_SINGULAR
  */
 ritz_status ritz_refuse_mechanism(const ritz_component *component,
                                   const ritz_dofs *i, const ritz_pairs *pairs,
-                                  int64_t weak);
+                                  int64_t weak, int64_t negative);
 
 #endif

@@ -20,16 +20,19 @@
  * substructures for dynamic analyses, AIAA Journal 6 (1968) 1313-1319.
  */
 #include "base/alloc.h"
+#include "base/search.h"
 #include "base/tolerances.h"
 #include "bases/columns.h"
 #include "bases/krylov.h"
 #include "linear/eigen_sparse.h"
+#include "linear/inertia.h"
 
 #include <float.h>
 #include <inttypes.h>
 #include <lapacke.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Boundary b, on which other bodies act, and interior i. */
@@ -53,22 +56,59 @@ static void partition_free(partition *s)
     ritz_basis_free(&s->held);
 }
 
+/* Median of K_jj / M_jj of the interior, 0 if no row has mass. */
+static ritz_status typical_value(const partition *s, double *out)
+{
+    RITZ_OWN_ARRAY double *ratio = NULL;
+    int64_t count = 0;
+
+    RITZ_CHECK_NEW(ratio, s->i.count);
+    for (int64_t j = 0; j < s->i.count; j++) {
+        const double m = ritz_sparse_diagonal(&s->M_ii, j);
+
+        if (m > 0.0)
+            ratio[count++] = fabs(ritz_sparse_diagonal(&s->K_ii, j)) / m;
+    }
+    qsort(ratio, (size_t)count, sizeof *ratio, ritz_ascending);
+    *out = count > 0 ? ratio[count / 2] : 0.0;
+    return RITZ_OK;
+}
+
+/* The number of negative eigenvalues, beyond what ten digits of K_ii leave of
+   zeros; 0 if they cannot be counted. */
+static ritz_status count_negative(const partition *s, int64_t *out)
+{
+    RITZ_OWN(ritz_counter) *C = NULL;
+    ritz_status status = RITZ_OK;
+    double typical = 0.0;
+
+    *out = 0;
+    RITZ_CHECK(typical_value(s, &typical));
+    if (typical == 0.0)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_counter_new(&s->K_ii, &s->M_ii, NULL, &C));
+    status = ritz_counter_below(C, -RITZ_RIGID_DIGITS * typical, out);
+    return status == RITZ_ERR_SINGULAR ? RITZ_OK : status;
+}
+
 /*
- * A sentence that names the dofs which move freely while the boundary is held.
+ * A sentence that names the dofs which move freely while the boundary is held,
+ * or whose motion has negative energy.
  *
  * @param[in] weak  row of K_ii that gave way, -1 if not known
  */
 static ritz_status refuse_mechanism(const partition *s, int64_t weak)
 {
-    const ritz_span rigid_only = {.modes = 0};
+    const ritz_span lowest = {.modes = 1};
     RITZ_OWN(ritz_pairs) pairs = {0};
-    const ritz_status status =
-        ritz_eigen_sparse(&s->K_ii, &s->M_ii, &rigid_only, &pairs);
+    ritz_status status = ritz_eigen_sparse(&s->K_ii, &s->M_ii, &lowest, &pairs);
+    int64_t negative = 0;
 
-    return status == RITZ_ERR_MEMORY
-               ? status
-               : ritz_refuse_mechanism(s->component, &s->i,
-                                       status == RITZ_OK ? &pairs : NULL, weak);
+    if (status == RITZ_ERR_MEMORY)
+        return status;
+    RITZ_CHECK(count_negative(s, &negative));
+    return ritz_refuse_mechanism(
+        s->component, &s->i, status == RITZ_OK ? &pairs : NULL, weak, negative);
 }
 
 /*

@@ -172,6 +172,30 @@ static void free_rigid_body_motion_is_refused_by_name(void **state)
     assert_non_null(strstr(ritz_error_message(), "grid 1 T1"));
 }
 
+/* K - tau M with tau between the second and the third eigenvalue of the bar
+   with its port held: two motions have negative energy. */
+static void indefinite_stiffness_is_refused_by_name(void **state)
+{
+    fixture *f = *state;
+    RITZ_OWN(ritz_component) bar = {0};
+    RITZ_OWN(ritz_sparse) K = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    ritz_request request = f->request;
+    const double tau =
+        0.5 * (bar_eigenvalue(ELEMENTS, 2) + bar_eigenvalue(ELEMENTS, 3));
+
+    assert_ok(bar_component(ELEMENTS, &bar));
+    assert_ok(ritz_sparse_add(1.0, &bar.K, -tau, &bar.M, &K));
+    ritz_sparse_free(&bar.K);
+    RITZ_MOVE(bar.K, K);
+    request.component = &bar;
+    assert_fails(
+        ritz_basis_make(&ritz_method_craig_bampton, &request, &basis),
+        RITZ_ERR_SINGULAR,
+        "not positive definite: with the attached dofs held, 2 motion(s) have "
+        "negative energy; largest at grid ");
+}
+
 static void requests_that_make_no_sense_are_refused(void **state)
 {
     fixture *f = *state;
@@ -243,6 +267,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(guyan_is_exact_statically),
     cmocka_unit_test(boundary_must_be_a_set_of_dofs),
     cmocka_unit_test(free_rigid_body_motion_is_refused_by_name),
+    cmocka_unit_test(indefinite_stiffness_is_refused_by_name),
     cmocka_unit_test(requests_that_make_no_sense_are_refused),
     cmocka_unit_test(matrices_that_are_not_needed_are_freed_if_owned),
     cmocka_unit_test(matrices_are_kept_where_they_are_still_needed),
