@@ -479,17 +479,20 @@ static ritz_status improve_pairs(search *s, ritz_dense *X, double **lambda)
     return RITZ_OK;
 }
 
-/* Pairs from the vectors that an engine found; without pairs, block Lanczos takes
-   over. */
+/* Pairs from the vectors that an engine found. If they cannot be refined, the
+   next search is by block Lanczos, and for more modes if this one was. */
 static ritz_status settle_pairs(search *s, ritz_dense *X, double **lambda)
 {
     const ritz_status status = is_approximate(s) ? improve_pairs(s, X, lambda)
                                                  : refine_pairs(s, X, lambda);
+    const bool dependent = status == RITZ_ERR_CONVERGENCE ||
+                           (status == RITZ_ERR_SINGULAR && s->S.A);
 
-    if (status != RITZ_ERR_CONVERGENCE || s->all ||
-        s->engine->find == find_by_blocks)
+    if (!dependent || s->all || s->misses++ >= MISSES)
         return status;
     ritz_pairs_free(&s->found);
+    if (s->engine->find == find_by_blocks)
+        s->ask += s->ask / 2 + SPARE;
     s->engine = &reliable;
     return RITZ_OK;
 }
@@ -580,9 +583,9 @@ static ritz_status search_missed(search *s, int64_t missed, double lambda)
     RITZ_REFUSE_IF(s->all || ++s->misses > MISSES, RITZ_ERR_CONVERGENCE,
                    "%" PRId64 " modes below %g Hz are not found", missed,
                    ritz_eigen_hertz(lambda));
-    if (s->engine->approximate)
+    if (s->engine->approximate && (s->engine->bounded || s->misses > 1))
         search_better(s);
-    s->ask += missed + SPARE;
+    s->ask += missed + SPARE + (s->misses > 1 ? s->ask / 2 : 0);
     return RITZ_OK;
 }
 
@@ -604,10 +607,14 @@ static ritz_status prove_lowest(search *s, int64_t end, bool *done)
     RITZ_CHECK(lend_factor(s, end));
     if (s->found.Phi.ncol > 0 && !s->span->uncounted)
         RITZ_CHECK(count_below(s, at, &count));
+    *done = count == at;
+    if (count < at && is_approximate(s) && s->misses++ < MISSES) {
+        search_better(s); /* the value is within a cluster */
+        return RITZ_OK;
+    }
     RITZ_REFUSE_IF(count < at, RITZ_ERR_CONVERGENCE,
                    "%" PRId64 " modes were found where there are %" PRId64, at,
                    count);
-    *done = count == at;
     if (!*done)
         return search_missed(s, count - at, s->counted_at);
     if (!is_approximate(s))
