@@ -155,22 +155,45 @@ static ritz_status factor_interior(partition *s)
     return ritz_context(status, "interior stiffness");
 }
 
-static ritz_status find_constraint_modes(partition *s)
+/* Move the columns of Psi, which stand at the front of the memory of T, to rows i
+   of T. From the last entry to the first, each moves to its own place or behind
+   it. */
+static void spread_rows(const ritz_dofs *i, ritz_dense *T)
+{
+    for (int64_t j = T->ncol; j-- > 0;) {
+        const double *psi = T->val + j * i->count;
+        double *t = ritz_dense_col(T, j);
+        int64_t row = T->nrow;
+
+        for (int64_t k = i->count; k-- > 0;) {
+            const double value = psi[k];
+
+            while (--row > i->at[k])
+                t[row] = 0.0;
+            t[row] = value;
+        }
+        while (row-- > 0)
+            t[row] = 0.0;
+    }
+}
+
+/* @param[in] L  the factor of K_ii; NULL: there is no interior */
+static ritz_status find_constraint_modes(partition *s, ritz_factor *L)
 {
     const ritz_sparse *K_ib = &s->K_ib;
     const ritz_dofs *b = s->b;
     ritz_basis *held = &s->held;
-    RITZ_OWN(ritz_dense) Psi = {0};
+    ritz_dense Psi = {.nrow = s->i.count, .ncol = b->count}; /* within T */
 
     ritz_monitor_step("constraint modes", 0, 0);
-    RITZ_CHECK(ritz_dense_new(s->i.count, b->count, &Psi));
+    RITZ_CHECK(ritz_basis_new(s->component->num_dofs, b->count, held));
+    Psi.val = held->T.val;
     for (int64_t j = 0; j < b->count; j++)
         for (int64_t p = K_ib->colptr[j]; p < K_ib->colptr[j + 1]; p++)
             ritz_dense_col(&Psi, j)[K_ib->rowind[p]] = -K_ib->val[p];
-    if (s->i.count > 0)
-        RITZ_CHECK(ritz_factor_solve(s->L, &Psi));
-    RITZ_CHECK(ritz_basis_new(s->component->num_dofs, b->count, held));
-    scatter_rows(&Psi, &s->i, 0, &held->T);
+    if (L)
+        RITZ_CHECK(ritz_factor_solve(L, &Psi));
+    spread_rows(&s->i, &held->T);
     for (int64_t j = 0; j < b->count; j++)
         ritz_dense_col(&held->T, j)[b->at[j]] = 1.0;
     ritz_columns_label_dofs(b->count, b->at, 0, &held->columns);
@@ -228,7 +251,7 @@ static ritz_status hold_boundary(const ritz_request *request, bool take,
 
     RITZ_CHECK(split_matrices(request, take, &s));
     RITZ_CHECK(factor_interior(&s));
-    RITZ_CHECK(find_constraint_modes(&s));
+    RITZ_CHECK(find_constraint_modes(&s, s.L));
     RITZ_MOVE(*out, s);
     return RITZ_OK;
 }
@@ -253,16 +276,6 @@ static ritz_status join_interior(const partition *s, const ritz_dense *X,
     ritz_dense_put(&s->held.T, 0, 0, &out->T);
     scatter_rows(X, &s->i, from->count, &out->T);
     return RITZ_OK;
-}
-
-/* The requested number of modes, or all up to the requested frequency. */
-static ritz_status find_normal_modes(const ritz_request *request, partition *s,
-                                     ritz_pairs *out)
-{
-    const ritz_span span = ritz_request_span(request);
-
-    RITZ_CHECK(ritz_eigen_factored(&s->K_ii, &s->M_ii, &s->L, &span, out));
-    return out->num_rigid > 0 ? refuse_mechanism(s, -1) : RITZ_OK;
 }
 
 /* The number of kept modes: a cluster at the end is kept whole. */
@@ -332,12 +345,10 @@ static void interior_statics_free(interior_statics *a)
     RITZ_FREE(a->least, a->keep);
 }
 
-/* X before its part in the modes is removed. */
-static ritz_status respond_interior(const ritz_request *request,
-                                    const partition *s, int usual,
-                                    interior_statics *out)
+static ritz_status collect_forces(const ritz_request *request,
+                                  const partition *s, int usual,
+                                  interior_statics *out)
 {
-    const double part = fmax(request->tolerance, RITZ_FORCE_RELIEVED);
     RITZ_OWN(ritz_dense) F = {0};
     RITZ_OWN_ARRAY int64_t *dof = NULL;
 
@@ -345,14 +356,25 @@ static ritz_status respond_interior(const ritz_request *request,
     if (ritz_loads_count(request, out->loads) == 0)
         return RITZ_OK;
     RITZ_CHECK(ritz_loads_collect(request, out->loads, &F, &dof));
-    RITZ_CHECK(ritz_dense_rows(&F, s->i.count, s->i.at, &out->F));
-    RITZ_CHECK(ritz_dense_copy(&out->F, &out->X));
-    if (s->L)
-        RITZ_CHECK(ritz_factor_solve(s->L, &out->X));
-    RITZ_CHECK_NEW(out->least, F.ncol);
-    RITZ_CHECK_NEW(out->keep, F.ncol);
-    for (int64_t j = 0; j < F.ncol; j++)
-        out->least[j] = part * ritz_dense_dot(&out->F, j, &out->X, j);
+    return ritz_dense_rows(&F, s->i.count, s->i.at, &out->F);
+}
+
+/* X before its part in the modes is removed. @param[in] L  the factor of K_ii;
+   NULL: there is no interior */
+static ritz_status respond_interior(const ritz_request *request, ritz_factor *L,
+                                    interior_statics *a)
+{
+    const double part = fmax(request->tolerance, RITZ_FORCE_RELIEVED);
+
+    if (a->F.ncol == 0)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_dense_copy(&a->F, &a->X));
+    if (L)
+        RITZ_CHECK(ritz_factor_solve(L, &a->X));
+    RITZ_CHECK_NEW(a->least, a->F.ncol);
+    RITZ_CHECK_NEW(a->keep, a->F.ncol);
+    for (int64_t j = 0; j < a->F.ncol; j++)
+        a->least[j] = part * ritz_dense_dot(&a->F, j, &a->X, j);
     return RITZ_OK;
 }
 
@@ -397,28 +419,98 @@ static ritz_status join_columns(const ritz_request *request, const partition *s,
     return RITZ_OK;
 }
 
+/* All that the factor of K_ii is needed for beside the modes. */
+typedef struct static_task {
+    const ritz_request *request;
+    partition *s;
+    interior_statics statics;
+    bool done;
+} static_task;
+
+static void static_task_free(static_task *t)
+{
+    interior_statics_free(&t->statics);
+}
+
+/* Constraint modes and static vectors. */
+static ritz_status find_statics(static_task *t, ritz_factor *L)
+{
+    RITZ_CHECK(find_constraint_modes(t->s, L));
+    RITZ_CHECK_IN("static vectors",
+                  respond_interior(t->request, L, &t->statics));
+    t->done = true;
+    return RITZ_OK;
+}
+
+/* A ritz_factor_use, for the first call with a factor of K_ii itself. */
+static ritz_status borrow_factor(void *of, const ritz_pairs *found,
+                                 int64_t count, ritz_factor *A, double sigma)
+{
+    static_task *t = of;
+
+    (void)found;
+    (void)count;
+    return A && sigma == 0.0 && !t->done ? find_statics(t, A) : RITZ_OK;
+}
+
+/* Whether the search still has the factor when it has found the modes. */
+static bool keeps_factor(const ritz_request *request)
+{
+    const ritz_span span = ritz_request_span(request);
+
+    return span.engine != RITZ_EIGEN_SLICES && span.engine != RITZ_EIGEN_AMLS;
+}
+
+/* The requested number of modes, or all up to the requested frequency. */
+static ritz_status find_normal_modes(static_task *t, ritz_pairs *out)
+{
+    const ritz_span span = ritz_request_span(t->request);
+    const ritz_factor_use use = {borrow_factor, t};
+    partition *s = t->s;
+
+    RITZ_CHECK(
+        ritz_eigen_factored(&s->K_ii, &s->M_ii, &s->L, &span, &use, out));
+    return out->num_rigid > 0 ? refuse_mechanism(s, -1) : RITZ_OK;
+}
+
+/*
+ * The modes, and then the statics: while the modes are found, memory has no
+ * constraint modes to hold. The factor is made again only if the search moved
+ * its shift away from zero.
+ */
+static ritz_status find_interior(static_task *t, ritz_pairs *modes)
+{
+    partition *s = t->s;
+
+    if (t->request->modes == 0 || !keeps_factor(t->request))
+        RITZ_CHECK(find_statics(t, s->L));
+    if (t->request->modes == 0)
+        return ritz_dense_new(s->i.count, 0, &modes->Phi);
+    RITZ_CHECK_IN("fixed-interface modes", find_normal_modes(t, modes));
+    if (t->done)
+        return RITZ_OK;
+    if (!s->L)
+        RITZ_CHECK(factor_interior(s));
+    return find_statics(t, s->L);
+}
+
 /* @param[in] usual  kinds of loads with static vectors, if none are
    requested */
 static ritz_status make_fixed(const ritz_request *request, int usual,
                               ritz_basis *out)
 {
     RITZ_OWN(partition) s = {0};
-    RITZ_OWN(interior_statics) statics = {0};
+    RITZ_OWN(static_task) t = {.request = request, .s = &s};
     RITZ_OWN(ritz_pairs) modes = {0};
 
     RITZ_CHECK(split_matrices(request, may_take_matrices(request), &s));
     RITZ_CHECK(factor_interior(&s));
-    RITZ_CHECK(find_constraint_modes(&s));
     RITZ_CHECK_IN("static vectors",
-                  respond_interior(request, &s, usual, &statics));
+                  collect_forces(request, &s, usual, &t.statics));
+    RITZ_CHECK(find_interior(&t, &modes));
     if (request->choice.interface_modes > 0 && s.b->count > 0)
         RITZ_CHECK_IN("interface modes", reduce_boundary(request, &s.held));
-    if (request->modes != 0)
-        RITZ_CHECK_IN("fixed-interface modes",
-                      find_normal_modes(request, &s, &modes));
-    else
-        RITZ_CHECK(ritz_dense_new(s.i.count, 0, &modes.Phi));
-    RITZ_CHECK(join_columns(request, &s, &modes.Phi, &statics, out));
+    RITZ_CHECK(join_columns(request, &s, &modes.Phi, &t.statics, out));
     ritz_columns_label(&modes, RITZ_COLUMN_NORMAL, s.held.T.ncol,
                        &out->columns);
     memcpy(out->origin.engine, modes.engine, sizeof out->origin.engine);
@@ -583,7 +675,8 @@ static ritz_status make_irs(const ritz_request *request, ritz_basis *out)
         RITZ_CHECK(solve_mass(&s, request->tolerance, &M_R, &K_R));
         RITZ_CHECK(add_inertia(&s, &K_R, &s.held.T));
     }
-    RITZ_CHECK(respond_interior(request, &s, 0, &statics));
+    RITZ_CHECK(collect_forces(request, &s, 0, &statics));
+    RITZ_CHECK(respond_interior(request, s.L, &statics));
     RITZ_CHECK(ritz_dense_new(s.i.count, 0, &none));
     RITZ_CHECK(join_columns(request, &s, &none, &statics, out));
     snprintf(out->origin.engine, sizeof out->origin.engine, "CHOLMOD");

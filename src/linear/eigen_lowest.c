@@ -105,11 +105,14 @@ ritz_status ritz_eigen_lending(const ritz_sparse *K, const ritz_sparse *M,
 }
 
 ritz_status ritz_eigen_factored(ritz_sparse *K, ritz_sparse *M, ritz_factor **L,
-                                const ritz_span *span, ritz_pairs *out)
+                                const ritz_span *span,
+                                const ritz_factor_use *use, ritz_pairs *out)
 {
     const ritz_eigen_given given = {.L = L, .K = K, .M = M};
-    ritz_status status = find_lowest(K, M, &given, span, NULL, out);
+    ritz_status status = find_lowest(K, M, &given, span, use, out);
 
+    if (status == RITZ_OK && use && *L) /* LAPACK did not take it */
+        status = use->call(use->of, out, out->Phi.ncol, *L, 0.0);
     ritz_factor_free(L);
     return status;
 }

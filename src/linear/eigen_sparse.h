@@ -7,21 +7,6 @@
 
 #include <ritz/matrix.h>
 
-/**
- * ritz_eigen_sparse() for a positive definite K whose Cholesky factor the
- * caller has. The search uses this factor (sigma = 0) instead of making one of
- * K - sigma M. The factor is freed once the pairs are found, before the count
- * makes its own, so that memory holds one factor at a time.
- *
- * @param[in,out] K,M  folded while block Lanczos does not need them, see
- *                     folded.h: their arrays may be others afterwards, with the
- *                     same contents. After RITZ_ERR_MEMORY they may be empty
- * @param[in,out] L    the factor of K; freed and NULL afterwards, also on
- *                     failure
- */
-ritz_status ritz_eigen_factored(ritz_sparse *K, ritz_sparse *M, ritz_factor **L,
-                                const ritz_span *span, ritz_pairs *out);
-
 /** Something that needs the factor of a search as well as its pairs. */
 typedef struct ritz_factor_use {
     /**
@@ -48,6 +33,24 @@ typedef struct ritz_factor_use {
 ritz_status ritz_eigen_lending(const ritz_sparse *K, const ritz_sparse *M,
                                const ritz_span *span,
                                const ritz_factor_use *use, ritz_pairs *out);
+
+/**
+ * ritz_eigen_sparse() for a positive definite K whose Cholesky factor the
+ * caller has. The search uses this factor (sigma = 0) instead of making one of
+ * K - sigma M. The factor is freed once the pairs are found, before the count
+ * makes its own, so that memory holds one factor at a time.
+ *
+ * @param[in,out] K,M  folded while block Lanczos does not need them, see
+ *                     folded.h: their arrays may be others afterwards, with the
+ *                     same contents. After RITZ_ERR_MEMORY they may be empty
+ * @param[in,out] L    the factor of K; freed and NULL afterwards, also on
+ *                     failure
+ * @param[in]     use  as of ritz_eigen_lending(); of a small pencil, it is called
+ *                     with the factor given, after LAPACK
+ */
+ritz_status ritz_eigen_factored(ritz_sparse *K, ritz_sparse *M, ritz_factor **L,
+                                const ritz_span *span,
+                                const ritz_factor_use *use, ritz_pairs *out);
 
 /** What the caller of a search hands over to it. */
 typedef struct ritz_eigen_given {
