@@ -26,7 +26,6 @@ ritz_status ritz_block_basis_new(int64_t room, ritz_block_basis *b)
     RITZ_CHECK_NEW(b->C, most * SQUARE);
     RITZ_CHECK(
         ritz_blocks_new(b->n, ritz_factor_threads(b->S->A), most, &b->on));
-    RITZ_CHECK(ritz_row_matrix_new(b->S->M, ritz_factor_order(b->S->A), &b->M));
     RITZ_CHECK_NEW(b->V, room + b->width);
     b->room = room + b->width;
     return RITZ_OK;
@@ -41,7 +40,6 @@ ritz_status ritz_block_basis_admit(const ritz_block_basis *b)
 void ritz_block_basis_free(ritz_block_basis *b)
 {
     ritz_blocks_free(&b->on);
-    ritz_row_matrix_free(&b->M);
     ritz_block_basis_shorten(b, 0);
     RITZ_FREE(b->V, b->W, b->MW, b->C);
 }
@@ -87,7 +85,7 @@ static double *part_of(const ritz_block_basis *b, double *W, int64_t q)
 /* Y := M X */
 static void multiply_mass(const ritz_block_basis *b, const double *X, double *Y)
 {
-    ritz_blocks_multiply(&b->on, &b->M, X, Y);
+    ritz_blocks_multiply(&b->on, b->M, X, Y);
 }
 
 void ritz_block_basis_multiply(const ritz_block_basis *b, double *X, double *Y)
@@ -163,7 +161,7 @@ static bool settle_column(ritz_block_basis *b, int j, const bool *others,
     size = sqrt(fmax(ritz_columns_inner(b->n, X, j, MX, j), 0.0));
     settled =
         size > least &&
-        size * size > RITZ_NO_DIRECTION * ritz_row_matrix_terms(&b->M, X, j);
+        size * size > RITZ_NO_DIRECTION * ritz_row_matrix_terms(b->M, X, j);
     R[j * B + j] = settled ? size : 0.0;
     ritz_columns_scale(b->n, settled ? 1.0 / size : 0.0, j, X);
     ritz_columns_scale(b->n, settled ? 1.0 / size : 0.0, j, MX);

@@ -28,7 +28,7 @@ typedef struct ritz_block_basis {
     double *MW; /* M times them; when W is put behind V, M times that */
     double *C;  /* 8 x 8 coefficients for each block of V and of W */
     ritz_blocks on;
-    ritz_row_matrix M;
+    const ritz_row_matrix *M; /* rows in the order of the factor; borrowed */
 } ritz_block_basis;
 
 /**
@@ -36,7 +36,7 @@ typedef struct ritz_block_basis {
  * filled, so that they fit where memory was freed before.
  *
  * @param[in]     room  blocks of V, a multiple of the width
- * @param[in,out] b     with S, n, width and noise; freed by
+ * @param[in,out] b     with S, n, width, noise and M; freed by
  *                      ritz_block_basis_free(), also on failure
  * @return RITZ_ERR_MEMORY
  */

@@ -1,6 +1,7 @@
 #include "linear/block_lanczos.h"
 
 #include "base/alloc.h"
+#include "base/memory.h"
 #include "base/tolerances.h"
 #include "linear/blas_threads.h"
 #include "linear/block_basis.h"
@@ -351,6 +352,7 @@ static ritz_status extract_vectors(block_lanczos *L, const ritz_dense *U,
 
     RITZ_CHECK(combine_basis(L, U));
     ritz_block_basis_shorten(&L->b, last);
+    ritz_memory_return(); /* X does not fit between the blocks that are left */
     RITZ_CHECK(ritz_dense_new(L->b.n, count, X));
     for (int64_t j = last; j-- > 0;) {
         const int64_t width = count - j * B < B ? count - j * B : B;
@@ -491,19 +493,62 @@ static double eigenvalue_at(const block_lanczos *L, int64_t c)
                : HUGE_VAL;
 }
 
-/* ritz_block_lanczos() while matrices that may be folded are, in the order of
-   plan->fold. */
+/* What there is of K and M during the iteration. */
+typedef struct lanczos_pencil {
+    ritz_row_matrix rows; /* of M, in the order of the factor */
+    ritz_folded K, M;     /* {0}: not folded */
+    bool freed;           /* M can be made of the rows again */
+} lanczos_pencil;
+
+static void lanczos_pencil_free(lanczos_pencil *P)
+{
+    ritz_row_matrix_free(&P->rows);
+    ritz_folded_free(&P->K);
+    ritz_folded_free(&P->M);
+}
+
+/* Free what is not needed of the matrices that may be folded: K is folded, and so
+   is an M with stored zeros, which its rows do not have. */
+static ritz_status fold_pencil(const ritz_lanczos_plan *plan, lanczos_pencil *P)
+{
+    ritz_sparse *M = plan->fold[1];
+
+    if (plan->fold[0])
+        RITZ_CHECK(ritz_folded_new(plan->fold[0], &P->K));
+    if (!M)
+        return RITZ_OK;
+    P->freed = M->colptr[M->ncol] == P->rows.start[P->rows.n];
+    if (!P->freed)
+        return ritz_folded_new(M, &P->M);
+    ritz_sparse_free(M);
+    return RITZ_OK;
+}
+
+static ritz_status open_pencil(const ritz_shifted *S,
+                               const ritz_lanczos_plan *plan, lanczos_pencil *P)
+{
+    if (P->freed)
+        RITZ_CHECK(ritz_row_matrix_restore(&P->rows, ritz_factor_order(S->A),
+                                           plan->fold[1]));
+    ritz_row_matrix_free(&P->rows);
+    ritz_memory_return();
+    RITZ_CHECK(ritz_folded_open(&P->K, plan->fold[0]));
+    return ritz_folded_open(&P->M, plan->fold[1]);
+}
+
+/* ritz_block_lanczos() with the matrices that may be folded. */
 static ritz_status find_pairs(const ritz_shifted *S, ritz_lanczos_plan *plan,
-                              ritz_folded *folded, ritz_dense *X,
-                              double **lambda, ritz_lanczos_end *end)
+                              lanczos_pencil *P, ritz_dense *X, double **lambda,
+                              ritz_lanczos_end *end)
 {
     const int64_t width = plan->k < MANY ? 1 : WIDEST;
     RITZ_OWN(block_lanczos)
     L = {
         .b = {.S = S,
-              .n = S->M->nrow,
+              .n = P->rows.n,
               .width = plan->width > 0 ? plan->width : width,
-              .noise = 1998},
+              .noise = 1998,
+              .M = &P->rows},
         .k = plan->k,
         .settled = plan->settled > 0.0 ? plan->settled : RITZ_LANCZOS_SETTLED,
     };
@@ -514,9 +559,7 @@ static ritz_status find_pairs(const ritz_shifted *S, ritz_lanczos_plan *plan,
     bool exhausted = false;
 
     RITZ_CHECK(allocate_lanczos(&L, plan->room));
-    for (int k = 0; k < 2; k++) /* M was copied, K is not needed */
-        if (plan->fold[k])
-            RITZ_CHECK(ritz_folded_new(plan->fold[k], &folded[k]));
+    RITZ_CHECK(fold_pencil(plan, P));
     RITZ_CHECK(ritz_block_basis_admit(&L.b));
     RITZ_CHECK(ritz_block_basis_begin(&L.b, &exhausted));
     *end = RITZ_LANCZOS_EXHAUSTED;
@@ -543,11 +586,13 @@ ritz_status ritz_block_lanczos(const ritz_shifted *S, ritz_lanczos_plan *plan,
                                ritz_dense *X, double **lambda,
                                ritz_lanczos_end *end)
 {
-    RITZ_OWN(ritz_folded_pair) folded = {0};
-    ritz_status status = find_pairs(S, plan, folded, X, lambda, end);
+    RITZ_OWN(lanczos_pencil) P = {0};
+    ritz_status status = RITZ_OK;
 
-    for (int k = 0; k < 2 && status != RITZ_ERR_MEMORY; k++) {
-        const ritz_status opened = ritz_folded_open(&folded[k], plan->fold[k]);
+    RITZ_CHECK(ritz_row_matrix_new(S->M, ritz_factor_order(S->A), &P.rows));
+    status = find_pairs(S, plan, &P, X, lambda, end);
+    if (status != RITZ_ERR_MEMORY) {
+        const ritz_status opened = open_pencil(S, plan, &P);
 
         status = status == RITZ_OK ? opened : status;
     }

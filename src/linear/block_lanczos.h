@@ -41,9 +41,9 @@ typedef struct ritz_lanczos_plan {
                              iteration, as ritz_vectors_polish() returns them;
                              freed by the caller */
     ritz_sparse *fold[2]; /* in: K and M of S if they may be folded during the
-                             iteration, see folded.h; NULL: not. Afterwards
-                             they are as before, but may be empty after
-                             RITZ_ERR_MEMORY */
+                             iteration, see folded.h, or M freed and made again
+                             of its rows; NULL: not. Afterwards they are as
+                             before, but may be empty after RITZ_ERR_MEMORY */
     double next; /* out: estimate of the next eigenvalue after those found, by
                       distance from sigma, or of the k-th one if the search was
                       SLOW; the true one is nearer to sigma. HUGE_VAL if there

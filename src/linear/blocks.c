@@ -61,6 +61,28 @@ ritz_status ritz_row_matrix_new(const ritz_sparse *A, const int64_t *order,
     return RITZ_OK;
 }
 
+ritz_status ritz_row_matrix_restore(const ritz_row_matrix *R,
+                                    const int64_t *order, ritz_sparse *A)
+{
+    RITZ_OWN(ritz_sparse) copy = {0};
+
+    RITZ_CHECK(ritz_sparse_new(R->n, R->n, R->start[R->n], &copy));
+    for (int64_t k = 0; k < R->n; k++) /* row k is column order[k] */
+        copy.colptr[order[k] + 1] = R->start[k + 1] - R->start[k];
+    for (int64_t j = 0; j < R->n; j++)
+        copy.colptr[j + 1] += copy.colptr[j];
+    for (int64_t k = 0; k < R->n; k++) {
+        int64_t at = copy.colptr[order[k]];
+
+        for (int64_t p = R->start[k]; p < R->start[k + 1]; p++, at++) {
+            copy.rowind[at] = order[R->col[p]];
+            copy.val[at] = R->val[p];
+        }
+    }
+    RITZ_MOVE(*A, copy);
+    return RITZ_OK;
+}
+
 void ritz_row_matrix_free(ritz_row_matrix *A)
 {
     RITZ_FREE(A->start, A->col, A->val);

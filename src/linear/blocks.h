@@ -70,6 +70,16 @@ typedef struct ritz_row_matrix {
 ritz_status ritz_row_matrix_new(const ritz_sparse *A, const int64_t *order,
                                 ritz_row_matrix *out);
 
+/**
+ * A := the matrix that was copied, with the same bits.
+ *
+ * @param[in]  R      of a matrix without stored zeros
+ * @param[in]  order  as for ritz_row_matrix_new()
+ * @return RITZ_ERR_MEMORY
+ */
+ritz_status ritz_row_matrix_restore(const ritz_row_matrix *R,
+                                    const int64_t *order, ritz_sparse *A);
+
 void ritz_row_matrix_free(ritz_row_matrix *A);
 
 /** |x_j|'|A||x_j| of vector @p j of a block. The rounding error of x_j'A x_j is

@@ -38,6 +38,4 @@ ritz_status ritz_folded_open(ritz_folded *F, ritz_sparse *A);
 
 void ritz_folded_free(ritz_folded *F);
 
-RITZ_PAIR_OF(ritz_folded);
-
 #endif

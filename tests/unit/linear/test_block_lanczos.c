@@ -296,10 +296,11 @@ static ritz_status find_folded_once(const ritz_sparse *K, const ritz_sparse *M,
     return find_folded(K, M, F, &X);
 }
 
-/* Folding K and M changes neither them nor a bit of the vectors. */
+/* Folding K and M changes neither them nor a bit of the vectors. Without stored
+   zeros M is made of its rows again, with them it is folded. */
 static void folded_matrices_change_nothing(void **state)
 {
-    RITZ_OWN(ritz_sparse) K = {0}, M = {0};
+    RITZ_OWN(ritz_sparse) K = {0}, M = {0}, with_zeros = {0};
     RITZ_OWN(ritz_factor) *F = NULL;
     RITZ_OWN(ritz_dense) X = {0}, Y = {0};
     RITZ_OWN_ARRAY double *lambda = NULL;
@@ -315,7 +316,14 @@ static void folded_matrices_change_nothing(void **state)
     assert_int_equal(X.ncol, Y.ncol);
     assert_memory_equal(X.val, Y.val,
                         (size_t)(X.nrow * X.ncol) * sizeof *X.val);
+    ritz_dense_free(&Y);
+    assert_ok(ritz_sparse_add(1.0, &M, 0.0, &K, &with_zeros));
+    assert_true(with_zeros.colptr[K.ncol] > M.colptr[K.ncol]);
+    assert_ok(find_folded(&K, &with_zeros, F, &Y));
+    assert_memory_equal(X.val, Y.val,
+                        (size_t)(X.nrow * X.ncol) * sizeof *X.val);
     assert_survives_every_allocation(find_folded_once(&K, &M, F));
+    assert_survives_every_allocation(find_folded_once(&K, &with_zeros, F));
 }
 
 static const struct CMUnitTest tests[] = {

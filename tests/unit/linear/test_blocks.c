@@ -216,6 +216,41 @@ static void rows_of_a_matrix_follow_the_order(void **state)
     ritz_blocks_free(&on);
 }
 
+static ritz_status copy_and_restore(const ritz_sparse *A, const int64_t *order,
+                                    ritz_sparse *out)
+{
+    RITZ_OWN(ritz_row_matrix) R = {0};
+
+    RITZ_CHECK(ritz_row_matrix_new(A, order, &R));
+    return ritz_row_matrix_restore(&R, order, out);
+}
+
+static ritz_status copy_and_restore_once(const ritz_sparse *A,
+                                         const int64_t *order)
+{
+    RITZ_OWN(ritz_sparse) B = {0};
+
+    return copy_and_restore(A, order, &B);
+}
+
+/* Rows of A have different lengths, and one is empty. */
+static void a_matrix_is_restored_from_its_rows(void **state)
+{
+    int64_t row[] = {0, 1, 3, 0, 1, 4, 0, 3, 1, 4};
+    int64_t col[] = {0, 0, 0, 1, 1, 1, 3, 3, 4, 4};
+    double val[] = {2.0, -1.0, 0.1, -1.0, 3.0, 0.3, 0.1, 5.0, 0.3, 7.0};
+    const int64_t order[] = {4, 2, 0, 3, 1};
+    RITZ_OWN(ritz_sparse) A = {0}, B = {0};
+
+    (void)state;
+    assert_ok(ritz_sparse_from_triplets(5, 5, 10, row, col, val, &A));
+    assert_ok(copy_and_restore(&A, order, &B));
+    assert_memory_equal(B.colptr, A.colptr, 6 * sizeof *A.colptr);
+    assert_memory_equal(B.rowind, A.rowind, 10 * sizeof *A.rowind);
+    assert_memory_equal(B.val, A.val, 10 * sizeof *A.val);
+    assert_survives_every_allocation(copy_and_restore_once(&A, order));
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(projections_are_sums_over_all_rows),
     cmocka_unit_test(two_blocks_are_multiplied_as_one_by_one),
@@ -223,6 +258,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(cholesky_of_the_inner_products_orthonormalises),
     cmocka_unit_test(a_dependent_vector_is_refused_by_the_cholesky_factor),
     cmocka_unit_test(rows_of_a_matrix_follow_the_order),
+    cmocka_unit_test(a_matrix_is_restored_from_its_rows),
 };
 
 TEST_MODULE(blocks, tests, NULL, NULL)
