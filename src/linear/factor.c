@@ -27,11 +27,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    SWEEPS = 3, /* of inverse iteration: one finds a lone small eigenvalue */
-    LARGE = 128 << 20, /* bytes of L from which its packing has freed memory
-                         returned first */
-};
+/* Sweeps of inverse iteration: one finds a lone small eigenvalue. */
+enum { SWEEPS = 3 };
 
 struct ritz_factor {
     int64_t n;
@@ -170,8 +167,7 @@ static ritz_status pack_factor(ritz_factor *F, cholesky *C, const double *a,
     } else {
         RITZ_CHECK_COPY(F->order, order, F->n);
         RITZ_CHECK(weakest_pivot(C->L, a, &ratio, &row));
-        if (C->L->xsize * sizeof(double) >= LARGE)
-            ritz_memory_return(); /* for a while parts of L are held twice */
+        ritz_memory_return(); /* for a while parts of L are held twice */
         RITZ_CHECK(ritz_supernodal_new(C->L, NULL, &F->S));
         cholmod_l_free_factor(&C->L, &C->common);
         if (row >= 0 && !(ratio > RITZ_PIVOT_STRONG))

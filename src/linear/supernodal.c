@@ -11,7 +11,6 @@
 #include <unistd.h>
 
 enum {
-    PAGE = 4 << 10,      /* bytes */
     HUGE_PAGE = 2 << 20, /* bytes */
     SHARE = 10,          /* subtrees for each thread, to balance their work */
     WORTHWHILE = 400000, /* one thread for each so many entries of L */
@@ -199,13 +198,14 @@ static int64_t block_size(const ritz_block_column *b)
     return diagonal_size(b->cols) + RITZ_TILE * panels_of(b->below) * b->cols;
 }
 
-/* Allocate room for all values, in huge pages where the system has them. Fewer
-   values than a huge page holds do not get one, since all of it would be cleared. */
+/* Allocate room for all values, in huge pages where the system has them. Only
+   those are asked for that the values fill, so that the last one takes no more
+   memory than it needs. */
 static ritz_status map_values(ritz_supernodal *S, int64_t count)
 {
-    const size_t needed = (size_t)count * sizeof(double);
-    const size_t page = needed < HUGE_PAGE ? PAGE : HUGE_PAGE;
-    const size_t bytes = (needed + page) / page * page;
+    const size_t page = HUGE_PAGE;
+    const size_t used = (size_t)count * sizeof(double);
+    const size_t bytes = (used + page) / page * page;
     void *map = MAP_FAILED;
 
     if (!ritz_alloc_denied || !ritz_alloc_denied())
@@ -213,8 +213,8 @@ static ritz_status map_values(ritz_supernodal *S, int64_t count)
                    MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     RITZ_REFUSE_IF(map == MAP_FAILED, RITZ_ERR_MEMORY,
                    "no memory for a factor of %zu MB", bytes >> 20);
-    if (page == HUGE_PAGE) /* a refusal costs only speed */
-        (void)madvise(map, bytes, MADV_HUGEPAGE);
+    /* a refusal costs only speed */
+    (void)madvise(map, used / page * page, MADV_HUGEPAGE);
     S->values = map;
     S->bytes = bytes;
     return RITZ_OK;
