@@ -6,6 +6,7 @@ static void *do_work(void *argument)
 {
     const ritz_aside *aside = argument;
 
+    ritz_team_member();
     aside->work(aside->task);
     return NULL;
 }

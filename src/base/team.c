@@ -118,18 +118,22 @@ void ritz_team_meet(int threads)
     announce_change(&team.meetings);
 }
 
+/* OpenMP keeps this number for each thread by itself: a BLAS that the caller has
+   set to one thread would start several in the threads of the team, and its sums
+   would depend on which thread works on an item. */
+void ritz_team_member(void)
+{
+    if (omp_set_num_threads)
+        omp_set_num_threads(1);
+}
+
 /* Run by each started thread: it does its part of every task. A task of fewer
-   threads has no part for it. OpenMP has a number of threads for each thread,
-   and an OpenBLAS built with OpenMP asks for that of its caller only: without
-   the first call the BLAS would have several threads here and one in the thread
-   that runs the task, and its sums would depend on which of them works on an
-   item. */
+   threads has no part for it. */
 static void *serve_tasks(void *argument)
 {
     const int thread = (int)(intptr_t)argument;
 
-    if (omp_set_num_threads)
-        omp_set_num_threads(1);
+    ritz_team_member();
     for (uint32_t seen = team.before[thread];; seen++) {
         await_change(&team.tasks, seen);
         if (thread < team.threads)

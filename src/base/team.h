@@ -86,6 +86,10 @@ int64_t ritz_team_shares(int threads);
 bool ritz_team_start(void *(*run)(void *argument), void *argument,
                      pthread_t *out);
 
+/** Let a BLAS that the calling thread uses start no threads. Called first in
+ * each thread that ritz_team_start() starts. */
+void ritz_team_member(void);
+
 /** The items [*from, *to) of part @p part, from 0, of @p count items in @p
  * parts contiguous parts that are equal but for one item. */
 static inline void ritz_team_part(int64_t count, int64_t part, int64_t parts,

@@ -67,6 +67,32 @@ static void a_task_may_use_fewer_threads_than_were_started(void **state)
     ritz_set_threads(1);
 }
 
+/* Null where no library that is linked uses OpenMP. */
+[[gnu::weak]] int omp_get_max_threads(void);
+
+static void ask_openmp(int thread, int threads, void *task)
+{
+    int *most = task;
+
+    (void)threads;
+    most[thread] = omp_get_max_threads();
+}
+
+/* A BLAS in a thread of the team would otherwise start as many as there are
+   cores, each time for each of them. */
+static void openmp_starts_no_threads_in_the_team(void **state)
+{
+    int most[2] = {0, 1};
+
+    (void)state;
+    if (!omp_get_max_threads)
+        skip();
+    ritz_set_threads(2);
+    ritz_team_run(ritz_team_ready(2), ask_openmp, most);
+    assert_int_equal(most[1], 1);
+    ritz_set_threads(1);
+}
+
 /* The child of a fork has the caller's thread alone, and starts others. */
 static void a_forked_process_starts_threads_of_its_own(void **state)
 {
@@ -195,6 +221,7 @@ static void a_thread_outside_the_team_blocks_signals(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(all_threads_work_and_meet),
     cmocka_unit_test(a_task_may_use_fewer_threads_than_were_started),
+    cmocka_unit_test(openmp_starts_no_threads_in_the_team),
     cmocka_unit_test(a_forked_process_starts_threads_of_its_own),
     cmocka_unit_test(parts_cover_every_item_once),
     cmocka_unit_test(every_item_is_worked_on_once),
