@@ -2,6 +2,7 @@
  * projections T'A T. */
 #include "base/alloc.h"
 #include "base/team.h"
+#include "linear/blas_threads.h"
 #include "linear/tiles.h"
 
 #include <ritz/matrix.h>
@@ -241,8 +242,13 @@ static ritz_status project_matrix(const ritz_sparse *A, const ritz_dense *T,
 ritz_status ritz_sparse_project(const ritz_sparse *A, const ritz_dense *T,
                                 ritz_dense *out)
 {
+    RITZ_OWN_ARRAY int64_t *next = NULL;
+
+    if (!A->colptr)
+        return RITZ_OK;
+    RITZ_CHECK_NEW(next, A->ncol);
     RITZ_CHECK(project_matrix(A, T, out));
-    if (A->colptr && ritz_sparse_asymmetry(A) == 0.0)
+    if (ritz_sparse_sweep_asymmetry(A, next) == 0.0)
         ritz_dense_symmetrise(out);
     return RITZ_OK;
 }
@@ -318,33 +324,47 @@ ritz_status ritz_sparse_mul_sizes(const ritz_sparse *A, const ritz_dense *X,
     return RITZ_OK;
 }
 
+enum { PANEL = 1024 }; /* rows of |T| at a time */
+
 /* C += |T|'S */
-static ritz_status add_magnitudes(const ritz_dense *T, const ritz_dense *S,
-                                  ritz_dense *C)
+typedef struct magnitudes_task {
+    const ritz_dense *T, *S;
+    ritz_dense *C;
+    double *room; /* PANEL rows of |T| */
+} magnitudes_task;
+
+/* Rows [from, to) of C, which are columns of T. */
+static void add_magnitudes(int thread, int64_t from, int64_t to, void *task)
 {
-    enum { PANEL = 1024 }; /* rows of |T| at a time */
-    RITZ_OWN_ARRAY double *rows = NULL;
+    const magnitudes_task *t = task;
+    const int64_t n = t->T->nrow;
+    double *rows = t->room + PANEL * from;
 
-    RITZ_CHECK_NEW(rows, PANEL * T->ncol);
-    for (int64_t r = 0; r < T->nrow && T->ncol > 0; r += PANEL) {
-        const int64_t count = T->nrow - r < PANEL ? T->nrow - r : PANEL;
+    (void)thread;
+    for (int64_t r = 0; r < n && from < to; r += PANEL) {
+        const int64_t count = n - r < PANEL ? n - r : PANEL;
 
-        for (int64_t j = 0; j < T->ncol; j++)
+        for (int64_t j = from; j < to; j++)
             for (int64_t i = 0; i < count; i++)
-                rows[j * count + i] = fabs(ritz_dense_col(T, j)[r + i]);
-        cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, (int)T->ncol,
-                    (int)S->ncol, (int)count, 1.0, rows, (int)count, S->val + r,
-                    (int)S->nrow, 1.0, C->val, (int)T->ncol);
+                rows[(j - from) * count + i] =
+                    fabs(ritz_dense_col(t->T, j)[r + i]);
+        cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, (int)(to - from),
+                    (int)t->S->ncol, (int)count, 1.0, rows, (int)count,
+                    t->S->val + r, (int)n, 1.0, t->C->val + from,
+                    (int)t->C->nrow);
     }
-    return RITZ_OK;
 }
 
 ritz_status ritz_sparse_terms(const ritz_sparse *A, const ritz_dense *T,
                               int64_t count, const int64_t *at, ritz_dense *out)
 {
+    const int threads = ritz_team_ready(1 + T->nrow * T->ncol / WORTHWHILE);
+    [[maybe_unused]] RITZ_OWN(ritz_blas_single) single = ritz_blas_single_new();
     RITZ_OWN(ritz_dense) terms = {0};
+    RITZ_OWN_ARRAY double *room = NULL;
 
     RITZ_CHECK(ritz_dense_new(T->ncol, count, &terms));
+    RITZ_CHECK_NEW(room, PANEL * T->ncol);
     for (int64_t j = 0; j < count; j += WIDE) {
         const int64_t some = count - j < WIDE ? count - j : WIDE;
         ritz_dense part = ritz_dense_part(&terms, j, some);
@@ -355,7 +375,8 @@ ritz_status ritz_sparse_terms(const ritz_sparse *A, const ritz_dense *T,
         else
             RITZ_CHECK(ritz_dense_columns(T, j, some, &X));
         RITZ_CHECK(ritz_sparse_mul_sizes(A, &X, NULL, &size));
-        RITZ_CHECK(add_magnitudes(T, &size, &part));
+        ritz_team_over(threads, T->ncol, add_magnitudes,
+                       &(magnitudes_task){T, &size, &part, room});
     }
     RITZ_MOVE(*out, terms);
     return RITZ_OK;
