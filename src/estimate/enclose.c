@@ -38,7 +38,6 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_SHIFTS = 16 };
 /* Trials that give intervals: the trial, its inverse iterate, and the richer
    one. */
 enum { TRIALS = 3 };
@@ -59,29 +58,10 @@ enum { INVERSE_STEPS = 2 };
  * interval.
  */
 
-ritz_status ritz_estimator_open(ritz_estimator *estimator, double sigma)
-{
-    ritz_status status = RITZ_ERR_SINGULAR;
-    const ritz_component *full = estimator->component;
-
-    if (estimator->A)
-        return RITZ_OK;
-    for (int t = 0; t < MOST_SHIFTS && status == RITZ_ERR_SINGULAR; t++) {
-        RITZ_OWN(ritz_sparse) A = {0};
-
-        estimator->sigma = t > 0 ? 10.0 * estimator->sigma : sigma;
-        RITZ_CHECK_IN(
-            "estimate",
-            ritz_sparse_add(1.0, &full->K, -estimator->sigma, &full->M, &A));
-        status = ritz_factor_spd(&A, &estimator->A);
-    }
-    return ritz_context(status, "estimate");
-}
-
 /* Ritz pairs in the range of Y, which may be far from orthonormal; Y becomes
-   their vectors. */
+   their vectors, X = Y C. @param[out] C  NULL: not wanted */
 static ritz_status take_ritz_pairs(const ritz_component *full, ritz_dense *Y,
-                                   ritz_lehmann *trial)
+                                   ritz_lehmann *trial, ritz_dense *C)
 {
     RITZ_OWN(ritz_dense) K = {0}, M = {0};
     RITZ_OWN(ritz_pairs) pairs = {0};
@@ -94,6 +74,8 @@ static ritz_status take_ritz_pairs(const ritz_component *full, ritz_dense *Y,
     trial->count = pairs.Phi.ncol;
     trial->theta = pairs.lambda;
     pairs.lambda = NULL;
+    if (C)
+        RITZ_MOVE(*C, pairs.Phi);
     return RITZ_OK;
 }
 
@@ -125,12 +107,10 @@ static ritz_status solve_residuals(ritz_factor *A, ritz_dense *R, ritz_dense *G)
     return RITZ_OK;
 }
 
-/* E = A^-1 R and G = R'E of R = K X - M X Theta; rounding of theta. */
-static ritz_status take_residuals(const ritz_estimator *estimator,
+/* E = R = K X - M X Theta, and the rounding of theta. */
+static ritz_status take_residuals(const ritz_component *full,
                                   ritz_lehmann *trial)
 {
-    const ritz_component *full = estimator->component;
-    RITZ_OWN(ritz_dense) R = {0};
     double largest = 0.0;
 
     if (trial->count > 0)
@@ -138,16 +118,20 @@ static ritz_status take_residuals(const ritz_estimator *estimator,
     RITZ_CHECK_NEW(trial->rounding, trial->count);
     RITZ_CHECK_NEW(trial->mass_terms, trial->count);
     RITZ_CHECK(ritz_pairs_subtract(&full->K, &full->M, &trial->X, trial->theta,
-                                   &R, trial->rounding, trial->mass_terms));
+                                   &trial->E, trial->rounding,
+                                   trial->mass_terms));
     for (int64_t j = 0; j < trial->count; j++)
         trial->rounding[j] =
             RITZ_CANCELLED_ROUNDINGS * DBL_EPSILON *
             (trial->rounding[j] +
              (fabs(trial->theta[j]) - trial->sigma) * trial->mass_terms[j] +
              largest);
-    RITZ_CHECK(solve_residuals(estimator->A, &R, &trial->G));
-    RITZ_MOVE(trial->E, R);
     return RITZ_OK;
+}
+
+ritz_status ritz_lehmann_solve(ritz_factor *A, ritz_lehmann *trial)
+{
+    return solve_residuals(A, &trial->E, &trial->G);
 }
 
 /* The interval of each eigenvalue of the reduced pencil. */
@@ -193,20 +177,23 @@ static ritz_status round_reduced(const ritz_reduced *reduced,
     return RITZ_OK;
 }
 
-ritz_status ritz_lehmann_new(ritz_estimator *estimator, const ritz_dense *T,
-                             const ritz_reduced *reduced,
+ritz_status ritz_lehmann_new(const ritz_estimator *estimator,
+                             const ritz_dense *T, const ritz_reduced *reduced,
                              const ritz_pairs *pairs, int64_t count,
                              ritz_lehmann *out)
 {
     const ritz_dense part = ritz_dense_part(&pairs->Phi, 0, count);
     RITZ_OWN(ritz_lehmann) trial = {.sigma = estimator->sigma};
-    RITZ_OWN(ritz_dense) Y = {0};
+    RITZ_OWN(ritz_dense) Y = {0}, C = {0};
 
     RITZ_CHECK(ritz_dense_mul(T, &part, &Y));
-    RITZ_CHECK(take_ritz_pairs(estimator->component, &Y, &trial));
+    RITZ_CHECK(take_ritz_pairs(estimator->component, &Y, &trial, &C));
     RITZ_REFUSE_IF(trial.count != count, RITZ_ERR_SINGULAR,
                    "estimate: columns of the basis depend on each other");
-    RITZ_CHECK(take_residuals(estimator, &trial));
+    /* X = T Phi_part C, and Phi'(T'M T)Phi = I */
+    RITZ_CHECK(ritz_dense_new(pairs->Phi.ncol, count, &trial.Q));
+    ritz_dense_put(&C, 0, 0, &trial.Q);
+    RITZ_CHECK(take_residuals(estimator->component, &trial));
     RITZ_CHECK(round_reduced(reduced, pairs, &trial));
     RITZ_MOVE(*out, trial);
     return RITZ_OK;
@@ -217,8 +204,9 @@ ritz_status ritz_lehmann_of_span(ritz_estimator *estimator, ritz_dense *Y,
 {
     RITZ_OWN(ritz_lehmann) trial = {.sigma = estimator->sigma};
 
-    RITZ_CHECK(take_ritz_pairs(estimator->component, Y, &trial));
-    RITZ_CHECK(take_residuals(estimator, &trial));
+    RITZ_CHECK(take_ritz_pairs(estimator->component, Y, &trial, NULL));
+    RITZ_CHECK(take_residuals(estimator->component, &trial));
+    RITZ_CHECK(ritz_lehmann_solve(estimator->A, &trial));
     RITZ_CHECK_NEW(trial.reduced_rounding, trial.count);
     RITZ_MOVE(*out, trial);
     return RITZ_OK;

@@ -42,27 +42,6 @@ enum { ITERATIONS = 4, MOST_BESIDE = 16 };
 enum { MOST_TRIES = 4, MOST_FOR_ONE = 16, GAPS_AROUND = 8 };
 enum { MORE = 10 };
 
-/* The factor of K - sigma M is not needed while modes are counted. */
-static ritz_status spill_factor(void *of)
-{
-    ritz_estimator *estimator = of;
-
-    return estimator->A ? ritz_factor_spill(estimator->A) : RITZ_OK;
-}
-
-static ritz_status open_counter(ritz_estimator *estimator)
-{
-    const ritz_component *full = estimator->component;
-
-    RITZ_CHECK(
-        ritz_counter_new(&full->K, &full->M,
-                         estimator->A ? ritz_factor_order(estimator->A) : NULL,
-                         &estimator->counter));
-    ritz_counter_relieve(estimator->counter,
-                         (ritz_relief){spill_factor, estimator});
-    return RITZ_OK;
-}
-
 /*
  * Count known eigenvalues below rho; false where that is uncertain. It is
  * certain if rho is above the first flexible eigenvalue, below the value up to
@@ -82,34 +61,36 @@ static bool count_known(const ritz_pairs *known, double rho, int64_t *below)
 }
 
 /*
- * The number of full modes below rho; RITZ_ERR_SINGULAR if the factor for the
- * count has a pivot that is zero within rounding, as a mode lies at rho.
+ * Whether the number of full modes below rho is known without a factor.
  *
  * If the basis has as many columns as the component has dofs, its Ritz values
  * are all eigenvalues, and no factorisation is needed unless rounding may have
  * moved one of them across rho.
  */
-static ritz_status count_below(const ritz_measuring *m, double rho,
-                               int64_t *below)
+static bool is_known(const ritz_measuring *m, double rho, int64_t *below)
 {
-    const ritz_component *full = m->estimator->component;
     const ritz_pairs *pairs = &m->pairs;
     int64_t count = pairs->Phi.ncol;
     double off = 0.0;
 
-    if (count == full->num_dofs) {
+    if (count == m->estimator->component->num_dofs) {
         off =
             RITZ_WHOLE_CLEAR * pairs->lambda[count - 1] + RITZ_GAP_NARROW * rho;
         *below = ritz_count_below(count, pairs->lambda, rho - off);
         if (*below == ritz_count_below(count, pairs->lambda, rho + off))
-            return RITZ_OK;
+            return true;
     }
-    if (count_known(m->estimator->request.modes, rho, below))
+    return count_known(m->estimator->request.modes, rho, below);
+}
+
+/* The number of full modes below rho; RITZ_ERR_SINGULAR if the factor for the
+   count has a pivot that is zero within rounding, as a mode lies at rho. */
+static ritz_status count_below(const ritz_measuring *m, double rho,
+                               int64_t *below)
+{
+    if (is_known(m, rho, below))
         return RITZ_OK;
-    m->estimator->num_factors++;
-    if (!m->estimator->counter)
-        RITZ_CHECK(open_counter(m->estimator));
-    return ritz_counter_below(m->estimator->counter, rho, below);
+    return ritz_estimator_below(m->estimator, rho, below);
 }
 
 /* Count the modes below rho, or below a slightly smaller value if a mode is at
@@ -301,6 +282,26 @@ static double propose_for(const ritz_measuring *m, int64_t k, double band)
     return rho;
 }
 
+/* The highest eigenvalue of modes first .. end - 1; 0: there are none. */
+static double highest_of(const ritz_measuring *m, int64_t end)
+{
+    return end > m->first ? m->trial.theta[end - 1] : 0.0;
+}
+
+/* Where a count would serve all of them, some way above the highest; NaN if
+   there is one. */
+static double propose_behind(const ritz_measuring *m, int64_t end)
+{
+    double band = highest_of(m, end);
+    double rho = nan("");
+
+    if (band > 0.0)
+        rho = find_above(m, RITZ_COUNT_NEAR * band, RITZ_COUNT_OFF * band);
+    if (band > 0.0 && isnan(rho))
+        rho = find_above(m, RITZ_COUNT_NEAR * band, RITZ_COUNT_FAR * band);
+    return rho;
+}
+
 /*
  * Where a count would tighten the enclosures of modes first .. reach - 1 most;
  * NaN if none helps.
@@ -311,14 +312,10 @@ static double propose_for(const ritz_measuring *m, int64_t k, double band)
 static double propose_count(const ritz_measuring *m, const int64_t *tries,
                             int64_t *mode)
 {
-    double band = m->reach > m->first ? m->trial.theta[m->reach - 1] : 0.0;
-    double rho = nan("");
+    double band = highest_of(m, m->reach);
+    double rho = propose_behind(m, m->reach);
     int64_t fewest = MOST_FOR_ONE;
 
-    if (band > 0.0)
-        rho = find_above(m, RITZ_COUNT_NEAR * band, RITZ_COUNT_OFF * band);
-    if (band > 0.0 && isnan(rho))
-        rho = find_above(m, RITZ_COUNT_NEAR * band, RITZ_COUNT_FAR * band);
     *mode = -1;
     for (int64_t k = m->reach - 1; k >= m->first && (isnan(rho) || *mode >= 0);
          k--) {
@@ -561,10 +558,40 @@ static ritz_status skip_rounded_rigid(ritz_measuring *m)
     return RITZ_OK;
 }
 
+/*
+ * The trial, and the factor if it is not there yet. That is made after the
+ * pairs: they tell where the first count is needed, which is then taken at the
+ * same time. If sigma must grow, rounding and residuals are those of the new
+ * one.
+ */
+static ritz_status open_trial(const ritz_basis *basis,
+                              const ritz_reduced *reduced, bool response,
+                              bool counts, ritz_measuring *m)
+{
+    ritz_estimator *estimator = m->estimator;
+    int64_t count = count_trial(m, response), below = 0;
+    double rho = nan("");
+
+    if (!estimator->A)
+        estimator->sigma =
+            -RITZ_ESTIMATE_SHIFT * ritz_eigen_lambda(m->band_hz[1]);
+    for (;;) {
+        RITZ_CHECK(ritz_lehmann_new(estimator, &basis->T, reduced, &m->pairs,
+                                    count, &m->trial));
+        rho = counts ? propose_behind(m, m->last) : nan("");
+        if (is_known(m, rho, &below))
+            rho = nan("");
+        RITZ_CHECK(ritz_estimator_factor(estimator, rho));
+        if (m->trial.sigma == estimator->sigma)
+            return ritz_lehmann_solve(estimator->A, &m->trial);
+        ritz_lehmann_free(&m->trial);
+    }
+}
+
 /* The reduced modes in the band, and the trial that serves them. */
 static ritz_status open_measuring(const ritz_basis *basis,
-                                  const ritz_reduced *reduced, bool *response,
-                                  ritz_measuring *m)
+                                  const ritz_reduced *reduced, bool counts,
+                                  bool *response, ritz_measuring *m)
 {
     ritz_estimator *estimator = m->estimator;
 
@@ -578,10 +605,7 @@ static ritz_status open_measuring(const ritz_basis *basis,
                 ritz_response_boundable(estimator, reduced, m->pairs.Phi.ncol);
     if (!(m->band_hz[1] > 0.0))
         return RITZ_OK;
-    RITZ_CHECK(ritz_estimator_open(
-        estimator, -RITZ_ESTIMATE_SHIFT * ritz_eigen_lambda(m->band_hz[1])));
-    RITZ_CHECK(ritz_lehmann_new(estimator, &basis->T, reduced, &m->pairs,
-                                count_trial(m, *response), &m->trial));
+    RITZ_CHECK(open_trial(basis, reduced, *response, counts, m));
     return skip_rounded_rigid(m);
 }
 
@@ -595,7 +619,7 @@ ritz_status ritz_estimator_measure(ritz_estimator *estimator,
     ritz_estimator bare = {0}; /* the same, nothing being counted */
     bool response = !least && !estimator->request.frequencies;
 
-    RITZ_CHECK(open_measuring(basis, reduced, &response, &m));
+    RITZ_CHECK(open_measuring(basis, reduced, !least, &response, &m));
     if (m.band_hz[1] > 0.0 && least) {
         bare = *estimator;
         bare.num_counts = 0;

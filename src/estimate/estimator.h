@@ -30,6 +30,7 @@ struct ritz_estimator {
     double sigma;
     ritz_factor *A;        /* factor of K - sigma M; NULL: not made yet */
     ritz_counter *counter; /* NULL: no count was made yet */
+    ritz_counted early;    /* counted while A was factored; rho 0: nothing */
     int64_t num_factors;   /* number of factorisations made for counts */
     int64_t num_counts;
     ritz_counted count[RITZ_MOST_COUNTS]; /* rho ascends */
@@ -51,20 +52,35 @@ typedef struct ritz_lehmann {
     double *reduced_low, *reduced_high;
     ritz_dense E; /* n x m, A^-1 R of the residuals R = K X - M X Theta */
     ritz_dense G; /* m x m, R'A^-1 R */
-    /* r x m, Phi_r'T'M X with all modes Phi_r of the reduced model; empty until
-       ritz_measuring_predict() needs it */
+    /* r x m, Phi_r'T'M X with all modes Phi_r of the reduced model; of an
+       inverse iterate empty until ritz_measuring_predict() needs it */
     ritz_dense Q;
     double sigma;
 } ritz_lehmann;
 
-/** Factor K - sigma M if it is not yet; |sigma| grows if it must. */
-ritz_status ritz_estimator_open(ritz_estimator *estimator, double sigma);
+/**
+ * Factor K - sigma M of the estimator's sigma, whose magnitude grows until the
+ * matrix is definite. If @p rho is not NaN, another thread counts the modes
+ * below it meanwhile. That count becomes `early`; if it fails, or memory may not
+ * hold both factors, there is none, and whoever needs it takes it again.
+ */
+ritz_status ritz_estimator_factor(ritz_estimator *estimator, double rho);
 
-/** Pairs of the space that the first @p count modes of @p reduced span. */
-ritz_status ritz_lehmann_new(ritz_estimator *estimator, const ritz_dense *T,
-                             const ritz_reduced *reduced,
+/** Count the modes below @p rho by a factor, unless it is the early count. */
+ritz_status ritz_estimator_below(ritz_estimator *estimator, double rho,
+                                 int64_t *below);
+
+/**
+ * Pairs of the space that the first @p count modes of @p reduced span, and
+ * their residuals R in place of E. G is empty until ritz_lehmann_solve().
+ */
+ritz_status ritz_lehmann_new(const ritz_estimator *estimator,
+                             const ritz_dense *T, const ritz_reduced *reduced,
                              const ritz_pairs *pairs, int64_t count,
                              ritz_lehmann *out);
+
+/** E := A^-1 E and G = R'A^-1 R of a trial from ritz_lehmann_new(). */
+ritz_status ritz_lehmann_solve(ritz_factor *A, ritz_lehmann *trial);
 
 /** Ritz pairs in the range of Y, whose columns are independent; no reduced
  * model. Y is left empty, or overwritten if that fails. */

@@ -379,7 +379,6 @@ static ritz_status group_modes(ritz_judge *j, int64_t first)
         j->group[j->count] = group_of(m, first);
         first = j->group[j->count++].last;
     }
-    RITZ_CHECK(take_overlap(m, &m->trial));
     return take_overlap(m, &m->polished);
 }
 

@@ -223,15 +223,21 @@ static ritz_status analyse_sparse(cholesky *C, const ritz_sparse *A,
         (int64_t)((C->L->xsize + C->L->maxcsize) * sizeof(double)));
 }
 
+/* How a definite matrix is factored. */
+typedef struct manner {
+    const int64_t *order; /* of rows; NULL: find one */
+    bool alone;           /* by one thread, however large it is */
+} manner;
+
 static ritz_status factorise_sparse(cholesky *C, const ritz_sparse *A,
-                                    const int64_t *order)
+                                    const manner *how)
 {
     cholmod_sparse view = view_sparse(A);
     ritz_blas_setting before = {0};
 
-    RITZ_CHECK(analyse_sparse(C, A, order));
+    RITZ_CHECK(analyse_sparse(C, A, how->order));
     ritz_monitor_step("factor", 0, 0);
-    before = ritz_blas_alone(C->common.fl);
+    before = ritz_blas_alone(how->alone ? 0.0 : C->common.fl);
     cholmod_l_factorize(&view, C->L, &C->common);
     ritz_blas_restore(before);
     return report_failure(C, A->nrow);
@@ -250,9 +256,8 @@ static ritz_status begin_factor(const ritz_sparse *A, ritz_factor *F,
     return RITZ_OK;
 }
 
-/* @param[in]  order  of rows; NULL: find one
-   @param[out] weak   as for ritz_factor_spd_weak(); NULL: not wanted */
-static ritz_status factor_definite(const ritz_sparse *A, const int64_t *order,
+/* @param[out] weak  as for ritz_factor_spd_weak(); NULL: not wanted */
+static ritz_status factor_definite(const ritz_sparse *A, const manner *how,
                                    ritz_factor **out, int64_t *weak)
 {
     RITZ_OWN(ritz_factor) *F = NULL;
@@ -263,7 +268,7 @@ static ritz_status factor_definite(const ritz_sparse *A, const int64_t *order,
         *weak = -1;
     RITZ_CHECK_NEW(F, 1);
     RITZ_CHECK(begin_factor(A, F, &a));
-    RITZ_CHECK(factorise_sparse(&C, A, order));
+    RITZ_CHECK(factorise_sparse(&C, A, how));
     RITZ_CHECK(pack_factor(F, &C, a, weak));
     RITZ_MOVE(*out, F);
     return RITZ_OK;
@@ -272,18 +277,26 @@ static ritz_status factor_definite(const ritz_sparse *A, const int64_t *order,
 ritz_status ritz_factor_spd_weak(const ritz_sparse *A, ritz_factor **out,
                                  int64_t *weak)
 {
-    return factor_definite(A, NULL, out, weak);
+    return factor_definite(A, &(manner){0}, out, weak);
 }
 
 ritz_status ritz_factor_spd(const ritz_sparse *A, ritz_factor **out)
 {
-    return factor_definite(A, NULL, out, NULL);
+    return factor_definite(A, &(manner){0}, out, NULL);
 }
 
 ritz_status ritz_factor_spd_ordered(const ritz_sparse *A, const int64_t *order,
                                     ritz_factor **out)
 {
-    return factor_definite(A, order, out, NULL);
+    return factor_definite(A, &(manner){.order = order}, out, NULL);
+}
+
+ritz_status ritz_factor_spd_alone(const ritz_sparse *A, const int64_t *order,
+                                  ritz_factor **out)
+{
+    const manner how = {.order = order, .alone = true};
+
+    return factor_definite(A, &how, out, NULL);
 }
 
 /* |b - A x| / | |A||x| + |b| | of the computed solution x of A x = b, for one b

@@ -32,6 +32,15 @@ ritz_status ritz_factor_signed(const ritz_sparse *A, const int64_t *order,
 ritz_status ritz_factor_spd_ordered(const ritz_sparse *A, const int64_t *order,
                                     ritz_factor **out);
 
+/**
+ * ritz_factor_spd_ordered() by one thread, for a caller that has work for
+ * another one.
+ *
+ * @param[in] order  not NULL
+ */
+ritz_status ritz_factor_spd_alone(const ritz_sparse *A, const int64_t *order,
+                                  ritz_factor **out);
+
 /** n numbers: row k of the factor is row order[k] of A. Borrowed from @p F. */
 const int64_t *ritz_factor_order(const ritz_factor *F);
 

@@ -49,6 +49,11 @@ typedef struct ritz_relief {
  * memory. With {0}, as in a new counter, such a count is refused. */
 void ritz_counter_relieve(ritz_counter *C, ritz_relief relief);
 
+/** Whether another thread makes a Cholesky factor of the same pattern while this
+ * counter counts: then a count is refused, as RITZ_ERR_MEMORY, unless memory
+ * holds both. */
+void ritz_counter_share(ritz_counter *C, bool shared);
+
 /**
  * The number of eigenvalues of K phi = lambda M phi below @p tau. The factor of
  * K - tau M is not kept, as in ritz_inertia_negative(): an eigenvalue that is at

@@ -61,6 +61,7 @@ enum {
     NULL_PIVOT_SIZE = 2,  /* of CNTL */
     OUTCOME = 0,          /* of INFOG */
     NEGATIVE_PIVOTS = 11, /* of INFOG */
+    FACTOR_ENTRIES = 19,  /* of INFOG; negative: in millions */
     MEGABYTES = 15,       /* of INFOG, that the job FACTOR will need */
     NUM_NULL_PIVOTS = 27, /* of INFOG */
 };
@@ -84,6 +85,7 @@ typedef struct mumps_factor {
     ritz_sparse *A;     /* borrowed, all but the array */
     int64_t *at;        /* of each row among the entries of one column */
     ritz_relief relief; /* of a counter; {0}: none */
+    bool shared;        /* another thread makes a factor, too */
 } mumps_factor;
 
 struct ritz_ldl {
@@ -236,11 +238,22 @@ static ritz_status run_job(mumps_factor *F, int job)
     return RITZ_OK;
 }
 
+/* About the bytes of a whole factor. CHOLMOD joins supernodes, and stores up to
+   half as much again as MUMPS counts. */
+static int64_t whole_factor(mumps_factor *F)
+{
+    const int64_t entries = FIELD(F, infog)[FACTOR_ENTRIES];
+
+    return 12 * (entries < 0 ? -1000000 * entries : entries);
+}
+
 /* Call the relief if a factor would not fit; refuse it if it still does not. */
 static ritz_status admit_factor(mumps_factor *F)
 {
     const int64_t bytes = (int64_t)FIELD(F, infog)[MEGABYTES] * 1000000;
 
+    RITZ_REFUSE_IF(F->shared && !ritz_memory_fits(bytes + whole_factor(F)),
+                   RITZ_ERR_MEMORY, "memory does not hold two factors");
     if (F->relief.call && !ritz_memory_fits(bytes))
         RITZ_CHECK(F->relief.call(F->relief.of));
     return ritz_memory_admit(
@@ -531,6 +544,11 @@ ritz_status ritz_counter_new(const ritz_sparse *K, const ritz_sparse *M,
 void ritz_counter_relieve(ritz_counter *C, ritz_relief relief)
 {
     C->of.relief = relief;
+}
+
+void ritz_counter_share(ritz_counter *C, bool shared)
+{
+    C->of.shared = shared;
 }
 
 /* MUMPS frees its workspace only together with its analysis. The analysis is

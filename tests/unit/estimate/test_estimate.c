@@ -3,6 +3,7 @@
 
 #include "bar.h"
 #include "dualspin.h"
+#include "estimate/estimator.h"
 #include "frame.h"
 #include "project.h"
 #include "spring_chain.h"
@@ -308,6 +309,45 @@ static void the_factor_leaves_memory_to_a_count(void **)
     ritz_estimator_free(&estimator);
 }
 
+/* The first count is that of a factor by itself, and is made once. Bounds have
+   the same bits with one thread, where it comes before the factor. */
+static void the_first_count_is_taken_while_factoring(void **)
+{
+    enum { ELEMENTS = 2500 };
+    int64_t attached[] = {0};
+    const ritz_estimate_request request = {.frequencies = true};
+    RITZ_OWN(ritz_component) bar = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
+    RITZ_OWN(ritz_measures) before = {0};
+
+    assert_ok(bar_component(ELEMENTS, &bar));
+    reduce_by(&ritz_method_craig_bampton, &bar, (ritz_dofs){1, attached}, 4,
+              &basis, &reduced);
+    for (int threads = 1; threads <= 2; threads++) {
+        ritz_estimator *estimator = NULL;
+        RITZ_OWN(ritz_measures) found = {0};
+        int64_t below = -1;
+
+        ritz_set_threads(threads);
+        assert_ok(ritz_estimator_new(&bar, &request, &estimator));
+        assert_ok(
+            ritz_estimator_measure(estimator, &basis, &reduced, false, &found));
+        ritz_set_threads(1);
+        assert_ok(ritz_inertia_below(&bar.K, &bar.M, estimator->early.rho, NULL,
+                                     &below));
+        assert_int_equal(estimator->early.below, below);
+        assert_int_equal(estimator->num_factors, estimator->num_counts);
+        ritz_estimator_free(&estimator);
+        for (int64_t k = 0; k < before.count; k++)
+            assert_memory_equal(&found.item[k].value, &before.item[k].value,
+                                sizeof found.item[k].value);
+        assert_true(found.count > 0);
+        ritz_measures_free(&before);
+        RITZ_MOVE(before, found);
+    }
+}
+
 /* Rows 3, 4, 5 of the chain have no mass: M is singular. */
 static void massless_dofs_are_no_obstacle(void **)
 {
@@ -380,6 +420,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(what_is_not_proven_is_called_an_estimate),
     cmocka_unit_test(one_estimator_serves_many_reductions),
     cmocka_unit_test(the_factor_leaves_memory_to_a_count),
+    cmocka_unit_test(the_first_count_is_taken_while_factoring),
     cmocka_unit_test(massless_dofs_are_no_obstacle),
     cmocka_unit_test(bands_and_bases_that_do_not_fit_are_refused),
     cmocka_unit_test(estimating_survives_every_allocation),
