@@ -1,6 +1,8 @@
 #include "print/print.h"
 
+#include "base/aside.h"
 #include "base/tolerances.h"
+#include "linear/ordering.h"
 
 /* "PORT=FILE:PORT": the last ':' ends the file's name. */
 static ritz_status split_neighbour(const char *text, ritz_joint *out,
@@ -299,29 +301,75 @@ static ritz_status project_component(const model *full, const ritz_basis *basis,
     return RITZ_OK;
 }
 
+static bool asked_for(const reduce_options *given, const char *estimates)
+{
+    return given->estimates && strcmp(given->estimates, estimates) == 0;
+}
+
+/* An order of the rows of a model's factors. It is found by another thread while
+   the basis is read and projected on, and is the one that ritz_estimate() would
+   find. */
+typedef struct early_order {
+    const ritz_component *full; /* borrowed */
+    ritz_orders *orders;        /* NULL: none is found early */
+    ritz_aside aside;
+} early_order;
+
+/* A failure is that of the estimate, which looks for an order again. */
+static void find_order(void *task)
+{
+    const early_order *e = task;
+    [[maybe_unused]] RITZ_OWN(ritz_orders_lent) lent =
+        ritz_orders_lend(e->orders);
+    RITZ_OWN(ritz_sparse) sum = {0};
+    RITZ_OWN_ARRAY int64_t *order = NULL;
+
+    if (ritz_sparse_add(1.0, &e->full->K, 1.0, &e->full->M, &sum) == RITZ_OK)
+        (void)ritz_ordering_new(&sum, &order);
+}
+
+static ritz_status begin_order(const model *full, const reduce_options *given,
+                               early_order *out)
+{
+    const ritz_component *component = &full->component;
+
+    if (full->kind == MODEL_STATES || asked_for(given, "none") ||
+        component->num_dofs < RITZ_ORDER_FROM || given->project)
+        return RITZ_OK;
+    out->full = component;
+    RITZ_CHECK(ritz_orders_new(&out->orders));
+    ritz_aside_begin(find_order, out, true, &out->aside);
+    return RITZ_OK;
+}
+
+static void early_order_free(early_order *e)
+{
+    ritz_aside_end(&e->aside);
+    ritz_orders_free(&e->orders);
+}
+
 /* Estimates of a model with the T that it stores, where that is the one of the
    basis, whose own copy is freed. */
 static ritz_status estimate_model(const model *full, ritz_basis *basis,
                                   const reduce_options *given,
-                                  ritz_reduced *reduced)
+                                  early_order *early, ritz_reduced *reduced)
 {
+    [[maybe_unused]] RITZ_OWN(ritz_orders_lent) lent =
+        ritz_orders_lend(early->orders);
     ritz_basis made = *basis;
 
     if (keeps_vectors(full, given)) {
         ritz_dense_free(&basis->T);
         made.T = reduced->T;
     }
+    ritz_aside_end(&early->aside);
     return ritz_estimate(&full->component, &made, &given->estimate, reduced);
-}
-
-static bool asked_for(const reduce_options *given, const char *estimates)
-{
-    return given->estimates && strcmp(given->estimates, estimates) == 0;
 }
 
 static ritz_status reduce_to_matrices(cli_run *run, const model *full,
                                       ritz_basis *basis,
-                                      const reduce_options *given)
+                                      const reduce_options *given,
+                                      early_order *early)
 {
     const char *what = run->operand[1];
     RITZ_OWN(model) made = {.kind = MODEL_REDUCED};
@@ -330,7 +378,7 @@ static ritz_status reduce_to_matrices(cli_run *run, const model *full,
 
     RITZ_CHECK_IN(what, project_component(full, basis, given, reduced));
     if (!asked_for(given, "none"))
-        RITZ_CHECK_IN(what, estimate_model(full, basis, given, reduced));
+        RITZ_CHECK_IN(what, estimate_model(full, basis, given, early, reduced));
     if (given->without_basis)
         drop_basis(reduced);
     RITZ_CHECK(describe_output(run, &made));
@@ -406,6 +454,7 @@ ritz_status reduce_run(cli_run *run, reduce_options *given)
     const char *what = run->operand[1];
     RITZ_OWN(model) full = {0};
     RITZ_OWN(model) basis = {0};
+    RITZ_OWN(early_order) early = {0}; /* after full, which it borrows */
 
     if (given->read) {
         RITZ_CHECK(given->read(run, run->operand[0], &full));
@@ -413,6 +462,7 @@ ritz_status reduce_run(cli_run *run, reduce_options *given)
         RITZ_CHECK(model_read(run, run->operand[0], MODEL_DYNAMIC, &full));
         RITZ_CHECK(model_as_component(&full, run->operand[0], &given->model));
     }
+    RITZ_CHECK(begin_order(&full, given, &early));
     RITZ_CHECK(model_read(run, what, MODEL_BASIS, &basis));
     RITZ_CHECK(check_rows(run, &full, &basis.basis));
     RITZ_CHECK(check_configuration(run, &full, &basis.basis));
@@ -431,5 +481,5 @@ ritz_status reduce_run(cli_run *run, reduce_options *given)
                        what);
         return reduce_to_states(run, &full, &basis.basis);
     }
-    return reduce_to_matrices(run, &full, &basis.basis, given);
+    return reduce_to_matrices(run, &full, &basis.basis, given, &early);
 }
