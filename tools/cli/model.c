@@ -1,6 +1,7 @@
 #include "cli/model.h"
 
 #include "base/alloc.h"
+#include "base/aside.h"
 #include "cli/walk.h"
 #include "model/squares.h"
 
@@ -9,6 +10,9 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+
+enum { LARGE = 1 << 20 }; /* bytes of a file from which threads gain time */
 
 /* Functions of a kind, to be called by its row. */
 #define DEFINE_KIND(KIND, type, member, name, noun)                            \
@@ -131,14 +135,68 @@ static ritz_status read_kept(const char *path, int wanted, model *out)
     return kinds[k].read(path, out);
 }
 
+/* The checksum of an input, by another thread while the input is read. */
+typedef struct summing {
+    const char *path;
+    char digest[RITZ_DIGEST_SIZE];
+    ritz_status status;
+} summing;
+
+static void sum_file(void *task)
+{
+    summing *s = task;
+
+    s->status = ritz_digest_file(s->path, s->digest);
+}
+
+/* Whether a second thread gains time with this file. */
+static bool is_large(const char *path)
+{
+    struct stat there = {0};
+
+    return stat(path, &there) == 0 && S_ISREG(there.st_mode) &&
+           there.st_size >= LARGE;
+}
+
+static ritz_status read_checked(const char *path, int wanted, model *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_CHECK(ritz_container_keep(path));
+    status = read_kept(path, wanted, out);
+    ritz_container_release();
+    return status;
+}
+
+/* Read a large file and its checksum at the same time. */
+static ritz_status read_and_sum(cli_run *run, const char *path, int wanted,
+                                model *out)
+{
+    summing s = {.path = path};
+    ritz_aside aside;
+    ritz_status status = RITZ_OK;
+
+    RITZ_CHECK(cli_input_unread(run, path));
+    ritz_aside_begin(sum_file, &s, true, &aside);
+    status = read_checked(path, wanted, out);
+    ritz_aside_end(&aside);
+    RITZ_CHECK(status);
+    if (s.status != RITZ_OK) /* again, for its sentence */
+        RITZ_CHECK(ritz_digest_file(path, s.digest));
+    cli_input_sum(run, path, s.digest);
+    return RITZ_OK;
+}
+
 ritz_status model_read(cli_run *run, const char *path, int wanted, model *out)
 {
     ritz_status status = RITZ_OK;
 
-    RITZ_CHECK(cli_input(run, path));
-    RITZ_CHECK(ritz_container_keep(path));
-    status = read_kept(path, wanted, out);
-    ritz_container_release();
+    if (is_large(path)) {
+        status = read_and_sum(run, path, wanted, out);
+    } else {
+        RITZ_CHECK(cli_input(run, path));
+        status = read_checked(path, wanted, out);
+    }
     RITZ_CHECK(status);
     if (out->kind == MODEL_COMPONENT &&
         out->component.asymmetry > MODEL_ROUNDING)
