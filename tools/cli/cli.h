@@ -148,6 +148,7 @@ typedef struct cli_run {
     int num_written;
     const char *written[CLI_MAX_OUTPUTS];
     bool quiet, json;
+    bool unread;                          /* nobody reads what is said */
     bool kept;                            /* see cli_keep_outputs */
     char interrupted[4 * RITZ_NAME_SIZE]; /* what a signal ended early, or "" */
     char diverted[CLI_MAX_COMMAND];       /* OUTPUT.interrupted, if one did */

@@ -41,6 +41,9 @@ void checksum_sparse(cli_run *run, const char *name, const ritz_sparse *A,
     char text[PARTS];
     int64_t nnz = A->colptr[A->ncol];
 
+    out[0] = '\0';
+    if (run->unread)
+        return;
     snprintf(text, sizeof text, "%ld %ld", A->nrow, A->ncol);
     add_part(text, A->colptr, A->ncol + 1, sizeof *A->colptr);
     add_part(text, A->rowind, nnz, sizeof *A->rowind);
@@ -65,7 +68,7 @@ static void describe_dense(cli_run *run, const char *name, const ritz_dense *A)
 {
     char text[PARTS], sum[RITZ_DIGEST_SIZE];
 
-    if (!A->val)
+    if (!A->val || run->unread)
         return;
     snprintf(text, sizeof text, "%ld %ld", A->nrow, A->ncol);
     add_part(text, A->val, A->nrow * A->ncol, sizeof *A->val);

@@ -149,9 +149,14 @@ void describe_remarks(cli_run *run, const ritz_scene *scene,
 
 ritz_status describe_output(cli_run *run, const model *m)
 {
+    ritz_status status = RITZ_OK;
+
     RITZ_CHECK(model_write(run, m));
     cli_say(run, "%s:", run->output);
-    return describe_model(run, m);
+    run->unread = run->quiet && !run->json;
+    status = describe_model(run, m);
+    run->unread = false;
+    return status;
 }
 
 static void describe_member(const ritz_container_row *row, void *data)
