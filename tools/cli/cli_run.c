@@ -38,8 +38,11 @@ static const char *const SPINS = "5000";
  * has them, and blocks below 256 MiB are reused instead of given back to the
  * kernel, which clears each page that it hands out again. With both,
  * Craig-Bampton of 43 000 dofs takes a sixth less time, and 6 % more memory.
+ * With one arena, what a thread allocates takes the place of what another one
+ * has freed. MUMPS in a thread of its own had twice the system time without.
  */
-static const char *const MALLOC = "glibc.malloc.hugetlb=1:"
+static const char *const MALLOC = "glibc.malloc.arena_max=1:"
+                                  "glibc.malloc.hugetlb=1:"
                                   "glibc.malloc.mmap_threshold=268435456:"
                                   "glibc.malloc.trim_threshold=268435456";
 
