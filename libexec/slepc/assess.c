@@ -228,8 +228,8 @@ static void add_rows(const assessor *a, const double lambda[WIDTH], sums s)
         const int64_t end = r + CHUNK < a->own ? r + CHUNK : a->own;
         double Kx[2][CHUNK * WIDTH], Mx[2][CHUNK * WIDTH];
 
-        tiles->terms(r, end, &a->K, a->x, Kx[0], Kx[1]);
-        tiles->terms(r, end, &a->M, a->x, Mx[0], Mx[1]);
+        tiles->of[0].terms(r, end, &a->K, a->x, Kx[0], Kx[1]);
+        tiles->of[0].terms(r, end, &a->M, a->x, Mx[0], Mx[1]);
         for (int64_t i = 0; i < (end - r) * WIDTH; i += WIDTH)
             add_row(a->x + r * WIDTH + i,
                     (const double *[]){Kx[0] + i, Kx[1] + i},

@@ -8,6 +8,7 @@
 /* Null where no library that is linked uses OpenMP. */
 [[gnu::weak]] void omp_set_max_active_levels(int levels);
 [[gnu::weak]] int omp_get_max_active_levels(void);
+[[gnu::weak]] void omp_set_num_threads(int threads);
 
 int ritz_blas_threads(int threads)
 {
@@ -30,6 +31,12 @@ void ritz_blas_single_free(ritz_blas_single *single)
 {
     ritz_blas_threads(single->before);
     single->before = 0;
+}
+
+void ritz_blas_single_here(int thread)
+{
+    if (thread > 0 && omp_set_num_threads)
+        omp_set_num_threads(1);
 }
 
 /* OpenBLAS is set first: if it expects several threads and OpenMP starts none,

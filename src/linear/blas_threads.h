@@ -24,6 +24,13 @@ typedef struct ritz_blas_single {
 ritz_blas_single ritz_blas_single_new(void);
 void ritz_blas_single_free(ritz_blas_single *single);
 
+/**
+ * Called by a thread of a team before it calls the BLAS, while a
+ * ritz_blas_single exists: OpenMP keeps the number of threads for each thread,
+ * so that an OpenBLAS which uses OpenMP must be told by every one.
+ */
+void ritz_blas_single_here(int thread);
+
 /* Settings before ritz_blas_alone(). */
 typedef struct ritz_blas_setting {
     int threads; /* number of threads of OpenBLAS; 0: was not changed */

@@ -53,9 +53,13 @@ ritz_status ritz_dense_rows(const ritz_dense *A, int64_t count,
                             const int64_t *row, ritz_dense *out)
 {
     RITZ_CHECK(allocate_dense(count, A->ncol, false, out));
-    for (int64_t j = 0; j < A->ncol; j++)
+    for (int64_t j = 0; j < A->ncol; j++) {
+        const double *a = ritz_dense_col(A, j);
+        double *to = ritz_dense_col(out, j);
+
         for (int64_t i = 0; i < count; i++)
-            ritz_dense_col(out, j)[i] = ritz_dense_col(A, j)[row[i]];
+            to[i] = a[row[i]];
+    }
     return RITZ_OK;
 }
 
@@ -72,9 +76,13 @@ ritz_status ritz_dense_pick(const ritz_dense *A, int64_t count,
 void ritz_dense_spread(const ritz_dense *B, const int64_t *row, ritz_dense *A)
 {
     memset(A->val, 0, (size_t)(A->nrow * A->ncol) * sizeof *A->val);
-    for (int64_t j = 0; j < A->ncol; j++)
+    for (int64_t j = 0; j < A->ncol; j++) {
+        const double *b = ritz_dense_col(B, j);
+        double *a = ritz_dense_col(A, j);
+
         for (int64_t i = 0; i < B->nrow; i++)
-            ritz_dense_col(A, j)[row[i]] = ritz_dense_col(B, j)[i];
+            a[row[i]] = b[i];
+    }
 }
 
 ritz_status ritz_dense_principal(const ritz_dense *A, int64_t count,
@@ -105,9 +113,9 @@ ritz_status ritz_dense_block(const ritz_dense *A, int64_t row, int64_t nrow,
 void ritz_dense_put(const ritz_dense *A, int64_t row, int64_t col,
                     ritz_dense *out)
 {
-    for (int64_t j = 0; j < A->ncol; j++)
-        for (int64_t i = 0; i < A->nrow; i++)
-            ritz_dense_col(out, col + j)[row + i] = ritz_dense_col(A, j)[i];
+    for (int64_t j = 0; j < A->ncol && A->nrow > 0; j++)
+        memcpy(ritz_dense_col(out, col + j) + row, ritz_dense_col(A, j),
+               (size_t)A->nrow * sizeof *out->val);
 }
 
 ritz_status ritz_dense_beside(const ritz_dense *A, const ritz_dense *B,

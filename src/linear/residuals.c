@@ -91,8 +91,8 @@ static void assess_rows(int thread, int64_t from, int64_t to, void *task)
         const int64_t end = r + CHUNK < to ? r + CHUNK : to;
         double Kx[2][CHUNK * WIDTH], Mx[2][CHUNK * WIDTH];
 
-        tiles->terms(r, end, K, a->of.x, Kx[0], Kx[1]);
-        tiles->terms(r, end, M, a->of.x, Mx[0], Mx[1]);
+        tiles->of[0].terms(r, end, K, a->of.x, Kx[0], Kx[1]);
+        tiles->of[0].terms(r, end, M, a->of.x, Mx[0], Mx[1]);
         for (int64_t i = 0; i < (end - r) * WIDTH; i += WIDTH)
             assess_row(a, a->of.x + r * WIDTH + i,
                        (const double *[]){Kx[0] + i, Kx[1] + i},
@@ -202,7 +202,7 @@ static void multiply_rows(const ritz_sparse *A, int64_t from, int64_t to,
 {
     double size[CHUNK * WIDTH];
 
-    ritz_tiles_here()->terms(from, to, A, x, y, size);
+    ritz_tiles_here()->of[0].terms(from, to, A, x, y, size);
     for (int64_t i = 0; i < to - from; i++)
         for (int c = 0; c < WIDTH; c++)
             sum[c] += fabs(x[(from + i) * WIDTH + c]) * size[i * WIDTH + c];

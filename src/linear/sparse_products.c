@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/team.h"
 #include "linear/blas_threads.h"
+#include "linear/tall.h"
 #include "linear/tiles.h"
 
 #include <ritz/matrix.h>
@@ -83,7 +84,7 @@ static ritz_status multiply_columns(const ritz_sparse *A, const ritz_dense *X,
     const int threads = ritz_team_ready(large ? groups : 1);
     RITZ_OWN_ARRAY double *room = NULL;
 
-    RITZ_CHECK_NEW(room, threads * size);
+    RITZ_CHECK_RAW(room, threads * size);
     ritz_team_run(threads, multiply_groups,
                   &(columns_task){A, X, Y, twofold, size, room});
     return RITZ_OK;
@@ -111,11 +112,13 @@ static ritz_status multiply(const ritz_sparse *A, const ritz_dense *X,
     RITZ_REFUSE_IF(A->ncol != X->nrow, RITZ_ERR_ARGUMENT,
                    "A has %" PRId64 " columns but X has %" PRId64 " rows",
                    A->ncol, X->nrow);
-    RITZ_CHECK(ritz_dense_new(A->nrow, X->ncol, &Y));
-    if (twofold || X->ncol >= EIGHT / 2)
+    if (twofold || X->ncol >= EIGHT / 2) {
+        RITZ_CHECK(ritz_tall_new(A->nrow, X->ncol, &Y));
         RITZ_CHECK(multiply_columns(A, X, twofold, &Y));
-    else
+    } else {
+        RITZ_CHECK(ritz_dense_new(A->nrow, X->ncol, &Y));
         multiply_few(A, X, &Y);
+    }
     RITZ_MOVE(*out, Y);
     return RITZ_OK;
 }
@@ -296,7 +299,7 @@ static void multiply_sizes(int thread, int threads, void *task)
         for (int64_t r = 0; r < n; r += ROWS) {
             const int64_t rows = n - r < ROWS ? n - r : ROWS;
 
-            ritz_tiles_here()->terms(r, r + rows, t->A, x, y, size);
+            ritz_tiles_here()->of[0].terms(r, r + rows, t->A, x, y, size);
             put_rows(rows, count, y, r, k, t->AX);
             put_rows(rows, count, size, r, k, t->size);
         }
@@ -312,10 +315,10 @@ ritz_status ritz_sparse_mul_sizes(const ritz_sparse *A, const ritz_dense *X,
     RITZ_OWN(ritz_dense) product = {0}, sizes = {0};
     RITZ_OWN_ARRAY double *room = NULL;
 
-    RITZ_CHECK_NEW(room, threads * A->ncol * EIGHT);
+    RITZ_CHECK_RAW(room, threads * A->ncol * EIGHT);
     if (AX)
-        RITZ_CHECK(ritz_dense_new(X->nrow, X->ncol, &product));
-    RITZ_CHECK(ritz_dense_new(X->nrow, X->ncol, &sizes));
+        RITZ_CHECK(ritz_tall_new(X->nrow, X->ncol, &product));
+    RITZ_CHECK(ritz_tall_new(X->nrow, X->ncol, &sizes));
     ritz_team_run(threads, multiply_sizes,
                   &(sizes_task){A, X, AX ? &product : NULL, &sizes, room});
     if (AX)

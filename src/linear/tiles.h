@@ -50,6 +50,13 @@ typedef struct ritz_tile_width {
     /** z += B'x, with the same rows. */
     void (*gather)(const ritz_block_column *b, int64_t from, int64_t to,
                    const double *x, const double *top, double *z);
+    /** Y := rows [from, to) of A X for a symmetric A. X has all rows, Y has to -
+     * from of them. */
+    void (*symmetric)(int64_t from, int64_t to, const ritz_sparse *A,
+                      const double *X, double *Y);
+    /** The same, and S := rows of |A||X|. */
+    void (*terms)(int64_t from, int64_t to, const ritz_sparse *A,
+                  const double *X, double *Y, double *S);
 } ritz_tile_width;
 
 typedef struct ritz_tiles {
@@ -71,11 +78,6 @@ typedef struct ritz_tiles {
      * rounding errors of Y. X, Y and L with 8 numbers a row. */
     void (*twofold)(const ritz_sparse *A, const double *X, double *Y,
                     double *L);
-    /** Y := rows [from, to) of A X, and S := those of |A||X|, for a symmetric
-     * A. X has all rows, Y and S have to - from of them, each with 8 numbers a
-     * row. */
-    void (*terms)(int64_t from, int64_t to, const ritz_sparse *A,
-                  const double *X, double *Y, double *S);
 } ritz_tiles;
 
 /** The kernels with the widest vectors that this processor has. The environment

@@ -189,6 +189,56 @@ INLINE void gather(const int64_t width, const ritz_block_column *b,
     }
 }
 
+/* |x| of each number, by clearing its sign bit. */
+INLINE vector magnitudes(vector x)
+{
+    return (vector)((integers)x & INT64_MAX);
+}
+
+INLINE void symmetric(const int64_t width, int64_t from, int64_t to,
+                      const ritz_sparse *A, const double *X, double *Y)
+{
+    enum { VECTORS = 16 / LANES };
+    const int64_t vectors = width / LANES;
+
+    for (int64_t i = from; i < to; i++, Y += width) {
+        vector sum[VECTORS] = {0};
+
+        for (int64_t p = A->colptr[i]; p < A->colptr[i + 1]; p++)
+            for (int64_t v = 0; v < vectors; v++)
+                sum[v] +=
+                    A->val[p] *
+                    *(const vector *)(X + width * A->rowind[p] + v * LANES);
+        for (int64_t v = 0; v < vectors; v++)
+            *(vector *)(Y + v * LANES) = sum[v];
+    }
+}
+
+INLINE void terms(const int64_t width, int64_t from, int64_t to,
+                  const ritz_sparse *A, const double *X, double *Y, double *S)
+{
+    enum { VECTORS = 16 / LANES };
+    const int64_t vectors = width / LANES;
+
+    for (int64_t i = from; i < to; i++, Y += width, S += width) {
+        vector sum[VECTORS] = {0}, size[VECTORS] = {0};
+
+        for (int64_t p = A->colptr[i]; p < A->colptr[i + 1]; p++)
+            for (int64_t v = 0; v < vectors; v++) {
+                const vector part =
+                    A->val[p] *
+                    *(const vector *)(X + width * A->rowind[p] + v * LANES);
+
+                sum[v] += part;
+                size[v] += magnitudes(part);
+            }
+        for (int64_t v = 0; v < vectors; v++) {
+            *(vector *)(Y + v * LANES) = sum[v];
+            *(vector *)(S + v * LANES) = size[v];
+        }
+    }
+}
+
 /* The functions of one width. */
 #define WIDTH(p)                                                               \
     static void lower_##p(const ritz_block_column *b, const double *x,         \
@@ -212,6 +262,16 @@ INLINE void gather(const int64_t width, const ritz_block_column *b,
                            double *z)                                          \
     {                                                                          \
         gather(p, b, from, to, x, top, z);                                     \
+    }                                                                          \
+    static void symmetric_##p(int64_t from, int64_t to, const ritz_sparse *A,  \
+                              const double *X, double *Y)                      \
+    {                                                                          \
+        symmetric(p, from, to, A, X, Y);                                       \
+    }                                                                          \
+    static void terms_##p(int64_t from, int64_t to, const ritz_sparse *A,      \
+                          const double *X, double *Y, double *S)               \
+    {                                                                          \
+        terms(p, from, to, A, X, Y, S);                                        \
     }
 
 WIDTH(8)
@@ -257,43 +317,16 @@ static void spread_8(const ritz_sparse *A, const double *X, double *Y)
     }
 }
 
-/* |x| of each number, by clearing its sign bit. */
-INLINE vector magnitudes(vector x)
-{
-    return (vector)((integers)x & INT64_MAX);
-}
-
-static void terms_8(int64_t from, int64_t to, const ritz_sparse *A,
-                    const double *X, double *Y, double *S)
-{
-    for (int64_t i = from; i < to; i++, Y += T, S += T) {
-        vector sum[T / LANES] = {0}, size[T / LANES] = {0};
-
-        for (int64_t p = A->colptr[i]; p < A->colptr[i + 1]; p++)
-            for (int64_t v = 0; v < T / LANES; v++) {
-                const vector part =
-                    A->val[p] *
-                    *(const vector *)(X + T * A->rowind[p] + v * LANES);
-
-                sum[v] += part;
-                size[v] += magnitudes(part);
-            }
-        for (int64_t v = 0; v < T / LANES; v++) {
-            *(vector *)(Y + v * LANES) = sum[v];
-            *(vector *)(S + v * LANES) = size[v];
-        }
-    }
-}
-
 #define TILES(lanes, bits)                                                     \
     const ritz_tiles ritz_tiles_##lanes = {                                    \
         .name = #bits " bit",                                                  \
-        .of = {{8, lower_8, upper_8, scatter_8, gather_8},                     \
-               {16, lower_16, upper_16, scatter_16, gather_16}},               \
+        .of = {{8, lower_8, upper_8, scatter_8, gather_8, symmetric_8,         \
+                terms_8},                                                      \
+               {16, lower_16, upper_16, scatter_16, gather_16, symmetric_16,   \
+                terms_16}},                                                    \
         .inner = inner_8,                                                      \
         .outer = outer_8,                                                      \
         .times = times_8,                                                      \
         .spread = spread_8,                                                    \
         .twofold = ritz_twofold_##lanes,                                       \
-        .terms = terms_8,                                                      \
     };
