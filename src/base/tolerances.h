@@ -400,6 +400,12 @@
 /* Rounding of each entry of a column after all sums of an orthogonalisation, in
    eps. */
 #define RITZ_ENTRY_ROUNDING 100.0
+/* A change with less than this part of the energy of a column does not cancel
+   its digits. */
+#define RITZ_SMALL_CHANGE 1e-2
+/* Energy of a column, over that of its rounding, from which directions that
+   rounding has left in it change products of columns by 1e-12 at most. */
+#define RITZ_CLEAR_OF_ROUNDING 1e12
 /* Square of eps: a squared norm below this part of another is 0. */
 #define RITZ_NEGLIGIBLE_SQUARE 0x1p-104
 /* A peak below this part of the highest is not followed between points. */

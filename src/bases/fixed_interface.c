@@ -21,6 +21,7 @@
  */
 #include "base/alloc.h"
 #include "base/search.h"
+#include "base/team.h"
 #include "base/tolerances.h"
 #include "bases/columns.h"
 #include "bases/krylov.h"
@@ -42,7 +43,9 @@ typedef struct partition {
     ritz_dofs i;
     ritz_sparse K_ii, K_ib, M_ii, M_ib;
     ritz_factor *L;  /* of K_ii; NULL where there is no interior */
-    ritz_basis held; /* [I; Psi], Psi = -K_ii^-1 K_ib: constraint modes */
+    ritz_dense Psi;  /* -K_ii^-1 K_ib: constraint modes */
+    ritz_basis held; /* the columns [I; Psi], and as its T, where whole vectors
+                        are needed, the vectors; Psi is then {0} */
 } partition;
 
 static void partition_free(partition *s)
@@ -53,6 +56,7 @@ static void partition_free(partition *s)
     ritz_sparse_free(&s->M_ii);
     ritz_sparse_free(&s->M_ib);
     ritz_factor_free(&s->L);
+    ritz_dense_free(&s->Psi);
     ritz_basis_free(&s->held);
 }
 
@@ -134,13 +138,36 @@ static ritz_status condense_boundary(const ritz_component *component,
     return RITZ_OK;
 }
 
+/* Rows of X, and the rows of T that they become. */
+typedef struct scattering {
+    const ritz_dense *X;
+    const ritz_dofs *to;
+    int64_t first; /* column of T */
+    ritz_dense *T;
+} scattering;
+
+static void scatter_columns(int thread, int64_t from, int64_t to, void *task)
+{
+    const scattering *s = task;
+
+    (void)thread;
+    for (int64_t j = from; j < to; j++) {
+        const double *x = ritz_dense_col(s->X, j);
+        double *t = ritz_dense_col(s->T, s->first + j);
+
+        for (int64_t k = 0; k < s->X->nrow; k++)
+            t[s->to->at[k]] = x[k];
+    }
+}
+
 /* Rows of X become the rows `to` of T, in columns from `first` on. */
 static void scatter_rows(const ritz_dense *X, const ritz_dofs *to,
                          int64_t first, ritz_dense *T)
 {
-    for (int64_t j = 0; j < X->ncol; j++)
-        for (int64_t k = 0; k < X->nrow; k++)
-            ritz_dense_col(T, first + j)[to->at[k]] = ritz_dense_col(X, j)[k];
+    enum { WORTHWHILE = 5000 }; /* rows from which several threads copy */
+
+    ritz_team_over(ritz_team_ready(X->nrow < WORTHWHILE ? 1 : X->ncol), X->ncol,
+                   scatter_columns, &(scattering){X, to, first, T});
 }
 
 static ritz_status factor_interior(partition *s)
@@ -155,35 +182,12 @@ static ritz_status factor_interior(partition *s)
     return ritz_context(status, "interior stiffness");
 }
 
-/* Move the columns of Psi, which stand at the front of the memory of T, to rows i
-   of T. From the last entry to the first, each moves to its own place or behind
-   it. */
-static void spread_rows(const ritz_dofs *i, ritz_dense *T)
-{
-    for (int64_t j = T->ncol; j-- > 0;) {
-        const double *psi = T->val + j * i->count;
-        double *t = ritz_dense_col(T, j);
-        int64_t row = T->nrow;
-
-        for (int64_t k = i->count; k-- > 0;) {
-            const double value = psi[k];
-
-            while (--row > i->at[k])
-                t[row] = 0.0;
-            t[row] = value;
-        }
-        while (row-- > 0)
-            t[row] = 0.0;
-    }
-}
-
 /* @param[in] L  the factor of K_ii; NULL: there is no interior */
 static ritz_status find_constraint_modes(partition *s, ritz_factor *L)
 {
     const ritz_sparse *K_ib = &s->K_ib;
     const ritz_dofs *b = s->b;
-    ritz_basis *held = &s->held;
-    ritz_dense Psi = {.nrow = s->i.count, .ncol = b->count}; /* within T */
+    RITZ_OWN(ritz_dense) Psi = {0};
 
     ritz_monitor_step("constraint modes", 0, 0);
     RITZ_CHECK(ritz_basis_new(s->component->num_dofs, b->count, held));
@@ -193,10 +197,26 @@ static ritz_status find_constraint_modes(partition *s, ritz_factor *L)
             ritz_dense_col(&Psi, j)[K_ib->rowind[p]] = -K_ib->val[p];
     if (L)
         RITZ_CHECK(ritz_factor_solve(L, &Psi));
-    spread_rows(&s->i, &held->T);
-    for (int64_t j = 0; j < b->count; j++)
-        ritz_dense_col(&held->T, j)[b->at[j]] = 1.0;
-    ritz_columns_label_dofs(b->count, b->at, 0, &held->columns);
+    RITZ_MOVE(s->Psi, Psi);
+    RITZ_CHECK(ritz_columns_new(b->count, &s->held.columns));
+    ritz_columns_label_dofs(b->count, b->at, 0, &s->held.columns);
+    return RITZ_OK;
+}
+
+/* The columns of T from the first on become [I; Psi]. */
+static void scatter_constraint_modes(const partition *s, ritz_dense *T)
+{
+    scatter_rows(&s->Psi, &s->i, 0, T);
+    for (int64_t j = 0; j < s->b->count; j++)
+        ritz_dense_col(T, j)[s->b->at[j]] = 1.0;
+}
+
+/* held.T := [I; Psi] */
+static ritz_status expand_constraint_modes(partition *s)
+{
+    RITZ_CHECK(ritz_dense_new(s->component->num_dofs, s->b->count, &s->held.T));
+    scatter_constraint_modes(s, &s->held.T);
+    ritz_dense_free(&s->Psi);
     return RITZ_OK;
 }
 
@@ -273,7 +293,10 @@ static ritz_status join_interior(const partition *s, const ritz_dense *X,
         out->columns.hertz[j] = from->hertz[j];
         out->columns.residual[j] = from->residual[j];
     }
-    ritz_dense_put(&s->held.T, 0, 0, &out->T);
+    if (s->held.T.val)
+        ritz_dense_put(&s->held.T, 0, 0, &out->T);
+    else
+        scatter_constraint_modes(s, &out->T);
     scatter_rows(X, &s->i, from->count, &out->T);
     return RITZ_OK;
 }
@@ -508,10 +531,12 @@ static ritz_status make_fixed(const ritz_request *request, int usual,
     RITZ_CHECK_IN("static vectors",
                   collect_forces(request, &s, usual, &t.statics));
     RITZ_CHECK(find_interior(&t, &modes));
-    if (request->choice.interface_modes > 0 && s.b->count > 0)
+    if (request->choice.interface_modes > 0 && s.b->count > 0) {
+        RITZ_CHECK(expand_constraint_modes(&s));
         RITZ_CHECK_IN("interface modes", reduce_boundary(request, &s.held));
+    }
     RITZ_CHECK(join_columns(request, &s, &modes.Phi, &t.statics, out));
-    ritz_columns_label(&modes, RITZ_COLUMN_NORMAL, s.held.T.ncol,
+    ritz_columns_label(&modes, RITZ_COLUMN_NORMAL, s.held.columns.count,
                        &out->columns);
     memcpy(out->origin.engine, modes.engine, sizeof out->origin.engine);
     return RITZ_OK;
@@ -671,6 +696,7 @@ static ritz_status make_irs(const ritz_request *request, ritz_basis *out)
     RITZ_CHECK(ritz_refuse_unattached(request, "nothing would be kept"));
     RITZ_CHECK(hold_boundary(request, false, &s));
     if (s.i.count > 0) {
+        RITZ_CHECK(expand_constraint_modes(&s));
         RITZ_CHECK(condense_boundary(s.component, &s.held.T, &K_R, &M_R));
         RITZ_CHECK(solve_mass(&s, request->tolerance, &M_R, &K_R));
         RITZ_CHECK(add_inertia(&s, &K_R, &s.held.T));
@@ -726,25 +752,44 @@ static ritz_status find_coupling(const partition *s, const ritz_dense *Psi,
 
 /* F_i: the coupling columns first, if the attached dofs are among the loads. */
 static ritz_status find_loads(const ritz_request *request, const partition *s,
-                              const ritz_dense *Psi, ritz_dense *out)
+                              ritz_dense *out)
 {
     int loads = ritz_krylov_loads(request, true);
     int others = loads & ~RITZ_LOADS_ATTACHED;
     int64_t more = ritz_loads_count(request, others);
-    int64_t b = loads & RITZ_LOADS_ATTACHED ? Psi->ncol : 0;
+    bool attached = loads & RITZ_LOADS_ATTACHED && s->Psi.ncol > 0;
     RITZ_OWN(ritz_dense) coupling = {0}, F = {0}, F_i = {0};
     RITZ_OWN_ARRAY int64_t *dof = NULL;
 
-    if (more > 0 || b == 0) /* refuses none */
+    if (more > 0 || !attached) { /* refuses none */
         RITZ_CHECK(
             ritz_loads_collect(request, more > 0 ? others : loads, &F, &dof));
-    RITZ_CHECK(ritz_dense_new(s->i.count, b + more, out));
-    if (b > 0)
-        RITZ_CHECK(find_coupling(s, Psi, &coupling));
-    ritz_dense_put(&coupling, 0, 0, out);
-    if (more > 0)
         RITZ_CHECK(ritz_dense_rows(&F, s->i.count, s->i.at, &F_i));
-    ritz_dense_put(&F_i, 0, b, out);
+    }
+    F_i.ncol = more > 0 ? F_i.ncol : 0;
+    if (attached)
+        RITZ_CHECK(find_coupling(s, &s->Psi, more > 0 ? &coupling : out));
+    if (more > 0 || !attached)
+        return ritz_dense_beside(&coupling, &F_i, out);
+    return RITZ_OK;
+}
+
+/* [I; Psi] and Krylov vectors, labelled and signed. What is not needed any more
+   is freed before T is allocated. */
+static ritz_status join_krylov(const ritz_request *request, const partition *s,
+                               ritz_krylov *S, ritz_basis *out)
+{
+    const ritz_dense V = ritz_dense_part(&S->set.V, 0, S->set.count);
+    RITZ_OWN(ritz_basis) signature = {0};
+
+    RITZ_CHECK(ritz_krylov_sign(S, request->modes, &signature));
+    ritz_dense_free(&S->set.WV);
+    RITZ_CHECK(join_interior(s, &V, out));
+    for (int64_t j = s->b->count; j < out->T.ncol; j++)
+        out->columns.kind[j] = RITZ_COLUMN_KRYLOV;
+    memcpy(out->remark, signature.remark, sizeof out->remark);
+    memcpy(out->origin.engine, signature.origin.engine,
+           sizeof out->origin.engine);
     return RITZ_OK;
 }
 
@@ -752,26 +797,22 @@ static ritz_status make_krylov_fixed(const ritz_request *request,
                                      ritz_basis *out)
 {
     RITZ_OWN(partition) s = {0};
-    RITZ_OWN(ritz_dense) Psi = {0}, F = {0};
+    RITZ_OWN(ritz_dense) F = {0};
     RITZ_OWN(ritz_elastic) interior = {0};
     RITZ_OWN(ritz_krylov) S = {0};
     RITZ_OWN(ritz_basis) basis = {0};
-    ritz_dense V = {0};
 
     RITZ_CHECK(hold_boundary(request, may_take_matrices(request), &s));
-    RITZ_CHECK(ritz_dense_rows(&s.held.T, s.i.count, s.i.at, &Psi));
-    RITZ_CHECK(find_loads(request, &s, &Psi, &F));
+    RITZ_CHECK(find_loads(request, &s, &F));
     interior = (ritz_elastic){.K = &s.K_ii, .M = &s.M_ii};
     RITZ_MOVE(interior.L, s.L);
     RITZ_CHECK(ritz_krylov_new(&interior, request, &S));
     RITZ_CHECK(ritz_krylov_run(&S, &F, 0));
-    V = ritz_dense_part(&S.set.V, 0, S.set.count);
-    RITZ_REFUSE_IF(s.b->count + V.ncol == 0, RITZ_ERR_ARGUMENT,
+    ritz_dense_free(&F);
+    RITZ_REFUSE_IF(s.b->count + S.set.count == 0, RITZ_ERR_ARGUMENT,
                    "the basis would have no vectors");
-    RITZ_CHECK(join_interior(&s, &V, &basis));
-    for (int64_t j = s.b->count; j < basis.T.ncol; j++)
-        basis.columns.kind[j] = RITZ_COLUMN_KRYLOV;
-    RITZ_CHECK(ritz_krylov_sign(&S, request->modes, &basis));
+    ritz_factor_free(&interior.L);
+    RITZ_CHECK(join_krylov(request, &s, &S, &basis));
     ritz_remark_dampers(request, ritz_krylov_loads(request, true), &basis);
     RITZ_MOVE(*out, basis);
     return RITZ_OK;

@@ -14,9 +14,12 @@
 #include "bases/krylov.h"
 
 #include "base/alloc.h"
+#include "base/team.h"
 #include "base/tolerances.h"
 #include "bases/columns.h"
 #include "bases/space.h"
+#include "linear/supernodal.h"
+#include "linear/tall.h"
 
 #include <float.h>
 #include <inttypes.h>
@@ -24,6 +27,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum {
+    WORTHWHILE = 5000, /* rows from which several threads sum columns */
+};
 
 /*
  * A free body responds to forces F by rigid motion and by deformation. With the
@@ -326,24 +333,43 @@ static ritz_status add_rigid_size(const ritz_elastic *E, const ritz_dense *G,
     return RITZ_OK;
 }
 
-/* Columns of R whose forces cancel are rounding: they become zero. */
-static void clear_rounding(const ritz_dense *G, const ritz_dense *size,
-                           ritz_dense *R)
+/* Responses X to the forces G, which are sums of terms of magnitude `size`;
+   {0}: of one term each. */
+typedef struct responses {
+    const ritz_dense *G, *size;
+    ritz_dense *X;
+} responses;
+
+/* Columns of X whose forces cancel are rounding: they become zero. */
+static void clear_rounding(int thread, int64_t from, int64_t to, void *task)
 {
-    for (int64_t j = 0; j < R->ncol; j++) {
-        const double *g = ritz_dense_col(G, j);
-        const double *all = ritz_dense_col(size, j);
-        double *x = ritz_dense_col(R, j);
+    const responses *t = task;
+    const int64_t n = t->X->nrow;
+
+    (void)thread;
+    for (int64_t j = from; j < to; j++) {
+        const double *g = ritz_dense_col(t->G, j);
+        const double *all = t->size->val ? ritz_dense_col(t->size, j) : g;
+        double *x = ritz_dense_col(t->X, j);
         double left = 0.0;
         double before = 0.0;
 
-        for (int64_t i = 0; i < R->nrow; i++) {
+        for (int64_t i = 0; i < n; i++) {
             left += fabs(g[i] * x[i]);
-            before += all[i] * fabs(x[i]);
+            before += fabs(all[i] * x[i]);
         }
-        if (!(left > RITZ_FORCE_RELIEVED * before) && R->nrow > 0)
-            memset(x, 0, (size_t)R->nrow * sizeof *x);
+        if (!(left > RITZ_FORCE_RELIEVED * before) && n > 0)
+            memset(x, 0, (size_t)n * sizeof *x);
     }
+}
+
+static void clear_responses(const ritz_dense *G, const ritz_dense *size,
+                            ritz_dense *X)
+{
+    const int64_t columns = X->nrow < WORTHWHILE ? 1 : X->ncol;
+
+    ritz_team_over(ritz_team_ready(columns), X->ncol, clear_rounding,
+                   &(responses){G, size, X});
 }
 
 ritz_status ritz_krylov_respond(const ritz_krylov *S,
@@ -355,43 +381,64 @@ ritz_status ritz_krylov_respond(const ritz_krylov *S,
 
     RITZ_CHECK(ritz_dense_copy(&forces->G, &X));
     if (free) {
-        RITZ_CHECK(ritz_dense_copy(&forces->size, &size));
+        RITZ_CHECK(forces->size.val ? ritz_dense_copy(&forces->size, &size)
+                                    : ritz_dense_abs(&forces->G, &size));
         RITZ_CHECK(add_rigid_size(S->body, &forces->G, &size));
         RITZ_CHECK(relieve_forces(S->body, &X));
         RITZ_CHECK(ritz_dense_copy(&X, &PG));
     }
     RITZ_CHECK(respond_elastic(S->body, point->A, &X));
-    clear_rounding(free ? &PG : &forces->G, free ? &size : &forces->size, &X);
+    clear_responses(free ? &PG : &forces->G, free ? &size : &forces->size, &X);
     RITZ_MOVE(*R, X);
     return RITZ_OK;
 }
 
-/* The forces F themselves, from column `first` on. */
-static ritz_status copy_loads(const ritz_dense *F, int64_t first,
-                              ritz_forces *out)
-{
-    RITZ_CHECK(ritz_dense_columns(F, first, F->ncol - first, &out->G));
-    return ritz_dense_abs(&out->G, &out->size);
-}
+/* The forces of a block: columns of F from `first` on, or, where F is NULL, the
+   inertia forces M Q of the last block of a point. */
+typedef struct block_forces {
+    const ritz_dense *F;
+    int64_t first;
+    bool last; /* F is needed no more, and is overwritten by the response */
+} block_forces;
 
-/* Inertia forces M Q of the last block of a point. */
-static ritz_status find_inertia(const ritz_krylov *S,
-                                const ritz_krylov_point *point,
-                                ritz_forces *out)
+/* Columns [j, j + count) of them. */
+static ritz_status find_forces(const ritz_krylov *S,
+                               const ritz_krylov_point *point,
+                               const block_forces *from, int64_t j,
+                               int64_t count, ritz_forces *out)
 {
-    const ritz_dense Q = ritz_dense_part(&S->set.V, point->first, point->count);
+    ritz_dense Q = {0};
 
+    if (from->F)
+        return ritz_dense_columns(from->F, from->first + j, count, &out->G);
+    Q = ritz_dense_part(&S->set.V, point->first + j, count);
     return ritz_sparse_mul_sizes(S->body->M, &Q, &out->G, &out->size);
 }
 
-/* Append the response to the forces at a point. */
+/* Append the response to the forces at a point; it is found for as many columns
+   at a time as a solve takes, so that little else is held. */
 static ritz_status append_block(ritz_krylov *S, const ritz_krylov_point *point,
-                                const ritz_forces *forces, int64_t most,
+                                const block_forces *from, int64_t most,
                                 bool *taken)
 {
-    RITZ_OWN(ritz_dense) R = {0};
+    const int64_t all = from->F ? from->F->ncol - from->first : point->count;
+    RITZ_OWN(ritz_dense) own = {0};
+    ritz_dense R = {0};
 
-    RITZ_CHECK(ritz_krylov_respond(S, point, forces, &R));
+    if (!from->last)
+        RITZ_CHECK(ritz_tall_new(S->body->K->nrow, all, &own));
+    R = from->last ? ritz_dense_part(from->F, from->first, all) : own;
+    for (int64_t j = 0; j < all; j += RITZ_SOLVE_WIDTH) {
+        const int64_t left = all - j;
+        RITZ_OWN(ritz_forces) forces = {0};
+        RITZ_OWN(ritz_dense) X = {0};
+
+        RITZ_CHECK(find_forces(
+            S, point, from, j,
+            left < RITZ_SOLVE_WIDTH ? left : RITZ_SOLVE_WIDTH, &forces));
+        RITZ_CHECK(ritz_krylov_respond(S, point, &forces, &X));
+        ritz_dense_put(&X, 0, j, &R);
+    }
     return ritz_orthonormal_append(&S->set, &R, most, taken);
 }
 
@@ -404,10 +451,9 @@ static ritz_status seed_vectors(ritz_krylov *S, const ritz_dense *F,
                                 bool *taken)
 {
     const ritz_krylov_point at_rest = {0};
-    RITZ_OWN(ritz_forces) forces = {0};
 
-    RITZ_CHECK(copy_loads(F, 0, &forces));
-    RITZ_CHECK(append_block(S, &at_rest, &forces, F->ncol, taken));
+    RITZ_CHECK(append_block(S, &at_rest, &(block_forces){F, 0, false}, F->ncol,
+                            taken));
     S->seeds = S->set.count;
     S->set.expected += S->seeds;
     return RITZ_OK;
@@ -420,11 +466,12 @@ static ritz_status seed_vectors(ritz_krylov *S, const ritz_dense *F,
 static ritz_status advance_point(ritz_krylov *S, const ritz_dense *F,
                                  int64_t seeded, ritz_krylov_point *point)
 {
+    const int64_t first = point->A ? 0 : seeded;
+    const block_forces forces = {F, first,
+                                 F && first == seeded &&
+                                     point == &S->point[S->num_points - 1]};
     int64_t before = S->set.count;
-    RITZ_OWN(ritz_forces) forces = {0};
 
-    RITZ_CHECK(F ? copy_loads(F, point->A ? 0 : seeded, &forces)
-                 : find_inertia(S, point, &forces));
     RITZ_CHECK(
         append_block(S, point, &forces, S->vectors + S->seeds - before, NULL));
     point->first = F && !point->A && before == S->seeds ? 0 : before;
@@ -434,7 +481,7 @@ static ritz_status advance_point(ritz_krylov *S, const ritz_dense *F,
     return RITZ_OK;
 }
 
-ritz_status ritz_krylov_run(ritz_krylov *S, const ritz_dense *F, int64_t seeded)
+ritz_status ritz_krylov_run(ritz_krylov *S, ritz_dense *F, int64_t seeded)
 {
     const int64_t full = S->vectors + S->seeds;
     bool moving = true;
@@ -467,35 +514,18 @@ void ritz_krylov_free(ritz_krylov *S)
     *S = (ritz_krylov){0};
 }
 
-/* Largest |v|'|W||v| of the columns. */
-static double largest_sum(const ritz_dense *V, const ritz_dense *size)
-{
-    double most = 0.0;
-
-    for (int64_t j = 0; j < V->ncol; j++) {
-        double sum = 0.0;
-
-        for (int64_t i = 0; i < V->nrow; i++)
-            sum += fabs(ritz_dense_col(V, j)[i]) * ritz_dense_col(size, j)[i];
-        most = fmax(most, sum);
-    }
-    return most;
-}
-
 static ritz_status measure_orthonormality(const ritz_krylov *S, double *worst,
                                           double *bound)
 {
-    bool by_mass = S->inner == RITZ_INNER_MASS;
-    const ritz_sparse *W = by_mass ? S->body->M : S->body->K;
     const ritz_dense V = ritz_dense_part(&S->set.V, 0, S->set.count);
-    RITZ_OWN(ritz_dense) WV = {0}, size = {0}, G = {0};
+    const ritz_dense WV = ritz_dense_part(&S->set.WV, 0, S->set.count);
+    RITZ_OWN(ritz_dense) G = {0};
 
-    RITZ_CHECK(ritz_sparse_mul_sizes(W, &V, &WV, &size));
-    RITZ_CHECK(ritz_dense_mul_tn(&V, &WV, &G));
+    RITZ_CHECK(ritz_tall_inner(&V, &WV, &G));
     for (int64_t j = 0; j < G.ncol; j++)
         ritz_dense_col(&G, j)[j] -= 1.0;
     *worst = ritz_dense_max(&G);
-    *bound = RITZ_SUMMED_ROUNDING * DBL_EPSILON * largest_sum(&V, &size);
+    *bound = RITZ_SUMMED_ROUNDING * DBL_EPSILON * S->set.terms;
     return RITZ_OK;
 }
 

@@ -65,7 +65,8 @@ typedef struct ritz_krylov {
  * is estimated.
  */
 typedef struct ritz_forces {
-    ritz_dense G, size; /* n x p */
+    ritz_dense G;    /* n x p */
+    ritz_dense size; /* the same; {0}: each is one term, |G| */
 } ritz_forces;
 
 /**
@@ -89,10 +90,10 @@ ritz_status ritz_krylov_new(const ritz_elastic *body,
  * Krylov sequences of all forces F about every point in turn, until there are
  * as many vectors as requested, or no new ones.
  *
+ * @param[in,out] F  columns from @p seeded on may be overwritten
  * @param[in] seeded  number of first columns of F that were seeds
  */
-ritz_status ritz_krylov_run(ritz_krylov *S, const ritz_dense *F,
-                            int64_t seeded);
+ritz_status ritz_krylov_run(ritz_krylov *S, ritz_dense *F, int64_t seeded);
 
 /**
  * R = P' A^-1 P G of a point. Columns that are rounding come out as zero.

@@ -9,7 +9,9 @@
 typedef struct ritz_orthonormal {
     int64_t count;        /* columns that are set; there may be room for more */
     ritz_dense V, WV;     /* n x room */
-    const ritz_sparse *W; /* borrowed; NULL: the identity */
+    double terms;         /* largest |v|'|W||v|, by which products by W are
+                             rounded */
+    const ritz_sparse *W; /* borrowed, symmetric; NULL: the identity */
     int64_t left;         /* of the last block: at least so many columns were
                              independent of V but not wanted; 0: none was */
     double tolerance;     /* of what is new in a column, relative, in W */
@@ -20,8 +22,8 @@ typedef struct ritz_orthonormal {
 /**
  * Nothing yet, for @p n rows.
  *
- * @param[in] W  definite on all that is appended; borrowed until free, NULL for
- *               the identity
+ * @param[in] W  symmetric, definite on all that is appended; borrowed until
+ *               free, NULL for the identity
  */
 ritz_status ritz_orthonormal_new(int64_t n, const ritz_sparse *W,
                                  double tolerance, ritz_orthonormal *out);
@@ -34,7 +36,8 @@ ritz_status ritz_orthonormal_new(int64_t n, const ritz_sparse *W,
  * @param[in]     most   append no more columns than this
  * @param[out]    taken  p, true for columns of R that gave one; NULL: not
  *                       wanted
- * @cost   O(n (count + p) p), twice; six products by W
+ * @cost   O(n (count + p) p), twice; a product by W for the block, and two for
+ *         each of the rounds that it takes
  */
 ritz_status ritz_orthonormal_append(ritz_orthonormal *set, ritz_dense *R,
                                     int64_t most, bool *taken);

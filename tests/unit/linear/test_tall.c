@@ -19,8 +19,8 @@ static void fill(int64_t rows, int64_t columns, double shift, ritz_dense *X)
         X->val[i] = sin((double)(i + 1) + shift);
 }
 
-/* Entries differ by `terms` eps at most: the number of terms of a sum, times the
-   sum of their magnitudes, is a bound of its rounding. */
+/* Entries differ by `terms` eps at most: the number of terms of a sum, times
+   the sum of their magnitudes, is a bound of its rounding. */
 static void check_near(const ritz_dense *A, const ritz_dense *B, double terms)
 {
     assert_int_equal(A->nrow, B->nrow);
