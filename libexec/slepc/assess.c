@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "blocks.h"
+#include "linear/residuals.h"
 #include "linear/tiles.h"
 #include "ranks.h"
 

@@ -190,8 +190,7 @@ static ritz_status find_constraint_modes(partition *s, ritz_factor *L)
     RITZ_OWN(ritz_dense) Psi = {0};
 
     ritz_monitor_step("constraint modes", 0, 0);
-    RITZ_CHECK(ritz_basis_new(s->component->num_dofs, b->count, held));
-    Psi.val = held->T.val;
+    RITZ_CHECK(ritz_dense_new(s->i.count, b->count, &Psi));
     for (int64_t j = 0; j < b->count; j++)
         for (int64_t p = K_ib->colptr[j]; p < K_ib->colptr[j + 1]; p++)
             ritz_dense_col(&Psi, j)[K_ib->rowind[p]] = -K_ib->val[p];

@@ -24,7 +24,7 @@ static ritz_status solve_all(const ritz_sparse *K, const ritz_sparse *M,
     RITZ_CHECK(ritz_sparse_dense(K, &K_d));
     RITZ_CHECK(ritz_sparse_dense(M, &M_d));
     RITZ_CHECK(ritz_eigen_unchecked(&K_d, &M_d, &P));
-    if (K->nrow <= RITZ_EIGEN_SMALL)
+    if (K->nrow <= ritz_trial_here()->small)
         RITZ_CHECK(ritz_spectra_keep(K, M, &P));
     RITZ_MOVE(*out, P);
     return RITZ_OK;

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Pencils of at most RITZ_EIGEN_SMALL dofs are stored, so that a full store takes
+/* Pencils that LAPACK always solves, of at most 600 dofs, are stored, so that a full store takes
    a few dozen megabytes. */
 enum { MOST_PENCILS = 8 };
 
