@@ -28,6 +28,7 @@
 #include "linear/density.h"
 #include "linear/enclosure.h"
 #include "linear/factor.h"
+#include "linear/first_shift.h"
 #include "linear/general.h"
 #include "linear/inertia.h"
 #include "linear/requested.h"
@@ -744,14 +745,18 @@ static ritz_status begin_search(search *s)
     double sigma = 0.0;
 
     RITZ_CHECK(survey_pencil(s));
-    sigma = RITZ_FIRST_SHIFT * s->typical;
     s->ask = (s->S.A ? 0 : BODY) + s->span->modes + BEHIND;
     if (s->span->modes < 0) {
         RITZ_CHECK(count_target(s));
         s->ask = s->target + BEHIND;
-        sigma = fmax(fmin(sigma, 0.1 * s->limit), RITZ_LEAST_SHIFT * sigma);
     }
-    return s->S.A ? RITZ_OK : shift_near(s, -sigma);
+    if (s->S.A)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_first_shift(s->S.K, s->typical, s->ask, &sigma));
+    if (s->span->modes < 0)
+        sigma = fmax(fmin(sigma, 0.1 * s->limit),
+                     RITZ_LEAST_SHIFT * RITZ_FIRST_SHIFT * s->typical);
+    return shift_near(s, -sigma);
 }
 
 static void name_engine(search *s)
