@@ -235,10 +235,12 @@
 /* A shift below 0 as part of the first flexible eigenvalue: small enough to
    converge, large enough to keep digits of a free body. */
 #define RITZ_SHIFT_OF_FIRST 1e-2
-/* Residual modes use the factor of the search for modes if its shift is at
-   least this part of RITZ_SHIFT_OF_FIRST times the first flexible eigenvalue: a
-   free body loses one more digit. */
-#define RITZ_SHIFT_LENT 0.1
+/* Residual modes use the factor of the search for modes if its shift is between
+   the first part of the first flexible eigenvalue and the second part of the
+   first eigenvalue that is left out. With a smaller shift the solves for a free
+   body lose digits; with a larger one sweeps cost more than another factor. */
+#define RITZ_SHIFT_LENT_LEAST 1e-5
+#define RITZ_SHIFT_LENT_MOST  0.05
 /* ... as part of K / M where no flexible mode is known. */
 #define RITZ_SHIFT_OF_SIZE 1e-6
 

@@ -9,7 +9,10 @@
  *
  *     Psi <- A^-1 (G + s M Psi),
  *
- * which contracts by s / (lambda + s) for every mode lambda that was left out.
+ * which multiplies the error in each mode lambda that was left out by
+ * s / (lambda + s). It starts with A^-1 G, which is A^-1 F without its part in
+ * the kept modes: the responses A^-1 F are computed anyway, because they are
+ * what the residual modes are compared with.
  * F' Psi = Psi' K Psi is the residual flexibility. Columns that are linearly
  * dependent in this matrix, or negligible relative to the flexibility of the
  * kept modes, are removed. With T = [Phi, Psi], T'KT and T'MT are block
@@ -42,13 +45,12 @@ void ritz_free_set_free(ritz_free_set *set)
  * A well conditioned. If that mode is not kept, its frequency is computed here;
  * if there is none, the shift follows from the magnitude of the matrices.
  *
- * *slow: after how many sweeps a change that has not halved is taken for
- * rounding. After none if the lowest flexible mode is known, as each sweep then
- * multiplies the error by RITZ_SHIFT_OF_FIRST or less; after SLOW_SWEEPS if the
- * shift is a guess, as first sweeps may then converge slowly.
+ * *rate: what a sweep multiplies the error by at most, as modes that are left
+ * out lie above the last one known; 1 if the shift is a guess.
  */
 static ritz_status choose_shift(const ritz_component *component,
-                                const ritz_pairs *modes, double *out, int *slow)
+                                const ritz_pairs *modes, double *out,
+                                double *rate)
 {
     const ritz_span one = {.modes = 1};
     double K = ritz_sparse_max(&component->K);
@@ -62,42 +64,52 @@ static ritz_status choose_shift(const ritz_component *component,
             ritz_eigen_sparse(&component->K, &component->M, &one, &first));
         known = &first;
     }
-    *slow = known->Phi.ncol > known->num_rigid ? 0 : SLOW_SWEEPS;
-    if (known->Phi.ncol > known->num_rigid)
+    if (known->Phi.ncol > known->num_rigid) {
         *out = RITZ_SHIFT_OF_FIRST * known->lambda[known->num_rigid];
-    else
+        *rate = *out / (known->lambda[known->Phi.ncol - 1] + *out);
+    } else {
         *out = K > 0.0 && M > 0.0 ? RITZ_SHIFT_OF_SIZE * K / M : 1.0;
+        *rate = 1.0;
+    }
+    return RITZ_OK;
+}
+
+/* share = Phi'F: for a unit force on a dof the row of Phi of that dof. */
+static ritz_status find_shares(const ritz_free_set *set, const ritz_dense *Phi,
+                               ritz_dense *share)
+{
+    const ritz_dense *F = &set->F;
+
+    RITZ_CHECK(ritz_dense_new(Phi->ncol, F->ncol, share));
+    for (int64_t j = 0; j < F->ncol; j++)
+        for (int64_t k = 0; k < Phi->ncol; k++)
+            ritz_dense_col(share, j)[k] =
+                set->dof[j] >= 0 ? ritz_dense_col(Phi, k)[set->dof[j]]
+                                 : ritz_dense_dot(Phi, k, F, j);
     return RITZ_OK;
 }
 
 /* most[j]: an upper bound of the kept flexible modes' static response to load
    j. */
-static ritz_status bound_responses(const ritz_pairs *modes, const ritz_dense *F,
-                                   double *most)
+static void bound_responses(const ritz_pairs *modes, const ritz_dense *share,
+                            double *most)
 {
-    RITZ_OWN(ritz_dense) share = {0};
-
-    RITZ_CHECK(ritz_dense_mul_tn(&modes->Phi, F, &share));
     for (int64_t k = modes->num_rigid; k < modes->Phi.ncol; k++) {
         const double size =
             ritz_dense_col_max(&modes->Phi, k) / modes->lambda[k];
 
-        for (int64_t j = 0; j < F->ncol; j++)
-            most[j] = fmax(most[j], size * fabs(ritz_dense_col(&share, j)[k]));
+        for (int64_t j = 0; j < share->ncol; j++)
+            most[j] = fmax(most[j], size * fabs(ritz_dense_col(share, j)[k]));
     }
-    return RITZ_OK;
 }
 
-/* X := A^-1 (G + s M Psi), one step of the iteration; the first has Psi = 0. */
+/* X := A^-1 (G + s M Psi), one step of the iteration. */
 static ritz_status iterate_residual(ritz_factor *A, const ritz_sparse *M,
                                     double s, const ritz_dense *G,
                                     const ritz_dense *Psi, ritz_dense *X)
 {
-    if (Psi)
-        RITZ_CHECK(ritz_sparse_mul(M, Psi, X));
-    else
-        RITZ_CHECK(ritz_dense_copy(G, X));
-    for (int64_t k = 0; Psi && k < G->nrow * G->ncol; k++)
+    RITZ_CHECK(ritz_sparse_mul(M, Psi, X));
+    for (int64_t k = 0; k < G->nrow * G->ncol; k++)
         X->val[k] = G->val[k] + s * X->val[k];
     return ritz_factor_solve(A, X);
 }
@@ -145,63 +157,83 @@ static void residual_task_free(residual_task *t)
 }
 
 /*
- * own[j] = f_j' A^-1 f_j, and least[j], the size of column j of Psi below which
- * it is rounding.
+ * X = A^-1 F, the responses f_j' A^-1 f_j, and least[j], the size of column j of Psi
+ * below which it is rounding.
  */
-static ritz_status find_scales(const ritz_dense *F, const ritz_pairs *modes,
-                               double tolerance, ritz_factor *A, double *own,
-                               double *least)
+static ritz_status find_responses(const residual_task *t,
+                                  const ritz_pairs *modes,
+                                  const ritz_dense *share, ritz_factor *A,
+                                  ritz_dense *X, double *least)
 {
-    RITZ_OWN(ritz_dense) X = {0};
+    const ritz_dense *F = &t->set->F;
 
-    RITZ_CHECK(ritz_dense_copy(F, &X));
-    RITZ_CHECK(ritz_factor_solve(A, &X));
-    RITZ_CHECK(bound_responses(modes, F, least));
-    for (int64_t j = 0; j < X.ncol; j++) {
-        own[j] = ritz_dense_dot(F, j, &X, j);
-        least[j] = fmax(tolerance * least[j],
-                        RITZ_FORCE_RELIEVED * ritz_dense_col_max(&X, j));
+    RITZ_CHECK(ritz_dense_copy(F, X));
+    RITZ_CHECK(ritz_factor_solve(A, X));
+    bound_responses(modes, share, least);
+    for (int64_t j = 0; j < X->ncol; j++) {
+        t->response[j] = ritz_dense_dot(F, j, X, j);
+        least[j] = fmax(t->request->tolerance * least[j],
+                        RITZ_FORCE_RELIEVED * ritz_dense_col_max(X, j));
     }
+    return RITZ_OK;
+}
+
+/* G = F - M Phi Phi'F. Rounding leaves a part along M Phi, to which A^-1 G
+   responds by kept modes, which are taken out of it. */
+static ritz_status relieve_loads(const ritz_dense *F, const ritz_dense *MPhi,
+                                 const ritz_dense *share, ritz_dense *G)
+{
+    RITZ_CHECK(ritz_dense_copy(F, G));
+    if (MPhi->ncol > 0)
+        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, (int)F->nrow,
+                    (int)F->ncol, (int)MPhi->ncol, -1.0, MPhi->val,
+                    (int)F->nrow, share->val, (int)share->nrow, 1.0, G->val,
+                    (int)F->nrow);
     return RITZ_OK;
 }
 
 /*
  * Psi and the responses, from the factor A of K + s M.
  *
- * @param[in]  slow    as of choose_shift
+ * A sweep leaves at most rate / (1 - rate) times the change that it made, in the
+ * norm of K. Sweeps end where that is rounding, or where rounding has become
+ * larger than what they gain: at the first change that has not halved, of which
+ * the first ones do not count if the rate is not known.
+ *
+ * @param[in]  rate    as of choose_shift
  * @param[out] change  largest relative change of a column in the last sweep,
  *                     without its part in the modes: of modes that are
  *                     approximate such a part comes back in each sweep
  */
 static ritz_status sweep_residual(const residual_task *t,
                                   const ritz_pairs *modes, ritz_factor *A,
-                                  double s, int slow, double *change)
+                                  double s, double rate, double *change)
 {
     const ritz_sparse *M = &t->request->component->M;
     const ritz_dense *F = &t->set->F, *Phi = &modes->Phi;
     const double settled = RITZ_SWEEPS_SETTLED * sqrt((double)M->nrow);
-    double moved = 1.0, best = HUGE_VAL;
-    RITZ_OWN(ritz_dense) MPhi = {0}, G = {0}, Psi = {0}, X = {0};
+    const double left = rate < 0.5 ? rate / (1.0 - rate) : 1.0;
+    const int slow = rate < 1.0 ? 0 : SLOW_SWEEPS;
+    double best = HUGE_VAL;
+    RITZ_OWN(ritz_dense) share = {0}, MPhi = {0}, G = {0}, Psi = {0};
     RITZ_OWN_ARRAY double *least = NULL;
 
     RITZ_CHECK_NEW(least, F->ncol);
-    RITZ_CHECK(
-        find_scales(F, modes, t->request->tolerance, A, t->response, least));
+    RITZ_CHECK(find_shares(t->set, Phi, &share));
+    RITZ_CHECK(find_responses(t, modes, &share, A, &Psi, least));
     RITZ_CHECK(ritz_sparse_mul(M, Phi, &MPhi));
-    RITZ_CHECK(ritz_dense_copy(F, &G));
-    RITZ_CHECK(ritz_dense_take_out(&MPhi, Phi, &G));
-    RITZ_CHECK(ritz_dense_take_out(&MPhi, Phi, &G)); /* a second pass
-                                                        suffices */
-    RITZ_CHECK(ritz_dense_new(G.nrow, G.ncol, &Psi));
-    for (int k = 0; k < MOST_SWEEPS && moved > settled; k++) {
-        RITZ_CHECK(iterate_residual(A, M, s, &G, k > 0 ? &Psi : NULL, &X));
-        moved = measure_change(&Psi, &X, least);
+    RITZ_CHECK(relieve_loads(F, &MPhi, &share, &G));
+    RITZ_CHECK(ritz_dense_take_out(Phi, &MPhi, &Psi));
+    for (int k = 0; k < MOST_SWEEPS; k++) {
+        RITZ_OWN(ritz_dense) X = {0};
+
+        RITZ_CHECK(iterate_residual(A, M, s, &G, &Psi, &X));
         RITZ_CHECK(ritz_dense_take_out(Phi, &MPhi, &X));
         *change = measure_change(&Psi, &X, least);
         ritz_dense_replace(&Psi, &X);
-        if (k > slow && moved > 0.5 * best)
-            break; /* rounding has become larger than contraction */
-        best = fmin(best, moved);
+        if (left * *change <= settled || (k > slow && *change > 0.5 * best))
+            break;
+        best = fmin(best, *change);
     }
     ritz_dense_replace(&t->set->Psi, &Psi);
     return RITZ_OK;
@@ -213,15 +245,15 @@ static ritz_status find_residual(const residual_task *t)
     const ritz_component *component = t->request->component;
     double s = 0.0;
     double change = 0.0;
-    int slow = 0;
+    double rate = 0.0;
     RITZ_OWN(ritz_sparse) A = {0};
     RITZ_OWN(ritz_factor) *L = NULL;
 
-    RITZ_CHECK(choose_shift(component, &t->set->modes, &s, &slow));
+    RITZ_CHECK(choose_shift(component, &t->set->modes, &s, &rate));
     RITZ_CHECK(ritz_sparse_add(1.0, &component->K, s, &component->M, &A));
     RITZ_CHECK_IN("shifted stiffness",
                   ritz_factor_spd_ordered(&A, t->order, &L));
-    RITZ_CHECK(sweep_residual(t, &t->set->modes, L, s, slow, &change));
+    RITZ_CHECK(sweep_residual(t, &t->set->modes, L, s, rate, &change));
     RITZ_REFUSE_IF(change > RITZ_SWEEPS_UNSETTLED, RITZ_ERR_CONVERGENCE,
                    "residual attachment modes still change by %.1e", change);
     return RITZ_OK;
@@ -241,17 +273,20 @@ static ritz_status borrow_factor(void *of, const ritz_pairs *found,
     const ritz_pairs kept = {.Phi = ritz_dense_part(&found->Phi, 0, count),
                              .lambda = found->lambda,
                              .num_rigid = rigid < count ? rigid : count};
+    const double s = -sigma;
+    double lowest = 0.0; /* eigenvalue that is left out, or a bound of it */
     double change = 0.0;
 
     t->done = false;
     if (A && !t->order && t->set->F.ncol > 0)
         RITZ_CHECK_COPY(t->order, ritz_factor_order(A), found->Phi.nrow);
-    if (!A || rigid >= all || t->set->F.ncol == 0 ||
-        -sigma < RITZ_SHIFT_LENT * RITZ_SHIFT_OF_FIRST * found->lambda[rigid] ||
-        -sigma >
-            RITZ_SHIFT_OF_FIRST * found->lambda[count < all ? count : all - 1])
+    if (!A || rigid >= all || t->set->F.ncol == 0)
         return RITZ_OK;
-    RITZ_CHECK(sweep_residual(t, &kept, A, -sigma, 0, &change));
+    lowest = found->lambda[count < all ? count : all - 1];
+    if (s < RITZ_SHIFT_LENT_LEAST * found->lambda[rigid] ||
+        s > RITZ_SHIFT_LENT_MOST * lowest)
+        return RITZ_OK;
+    RITZ_CHECK(sweep_residual(t, &kept, A, s, s / (lowest + s), &change));
     t->done = change <= RITZ_SWEEPS_UNSETTLED;
     return RITZ_OK;
 }
@@ -353,7 +388,7 @@ static ritz_status choose_independent(const double *response, double tolerance,
     RITZ_OWN(ritz_dense) share = {0};
 
     RITZ_CHECK_NEW(least, a + b);
-    RITZ_CHECK(ritz_dense_mul_tn(&set->modes.Phi, &set->F, &share));
+    RITZ_CHECK(find_shares(set, &set->modes.Phi, &share));
     for (int64_t j = 0; j < a + b; j++) {
         const double own = ritz_dense_dot(&set->F, j, &set->Psi, j);
         const double kept = kept_flexibility(&set->modes, &share, j);
