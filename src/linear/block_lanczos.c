@@ -405,13 +405,21 @@ static ritz_status restart_space(block_lanczos *L, const double *R)
 }
 
 /* Whether to look for converged pairs, which costs an eigensolution of T: once
-   V has *next blocks or is full; sets *next for the time after. */
-static bool is_time_to_look(const block_lanczos *L, int64_t *next)
+   V has `next` blocks or is full. */
+static bool is_time_to_look(const block_lanczos *L, int64_t next)
 {
-    if (L->b.blocks < *next && L->b.blocks < L->room)
-        return false;
-    *next = L->b.blocks + 1 + L->b.blocks / 32;
-    return true;
+    return L->b.blocks >= next || L->b.blocks == L->room;
+}
+
+/* The number of blocks at the next look. A block of B vectors hardly makes more
+   than B pairs converge, so that fewer blocks than are skipped would not be
+   enough; in a large V another block costs less than a look. */
+static int64_t next_look(const block_lanczos *L, int64_t found)
+{
+    const int64_t missing = L->k > found ? (L->k - found) / B : 0;
+    const int64_t more = L->b.blocks / 32;
+
+    return L->b.blocks + 1 + (missing > more ? missing - 1 : more);
 }
 
 /* Whether at least k pairs have converged, and S->below of them lie below
@@ -459,10 +467,11 @@ static ritz_status iterate_blocks(block_lanczos *L, double *R, int64_t *found,
         ritz_monitor_step("eigenvectors", ++steps, 0);
         expand_space(L, &size);
         RITZ_CHECK(ritz_block_basis_orthonormalise(&L->b, size, R, &exhausted));
-        if (exhausted || is_time_to_look(L, &next)) {
+        if (exhausted || is_time_to_look(L, next)) {
             RITZ_CHECK(solve_projected(L));
             *found = count_converged(
                 L, L->b.S->below > 0 ? L->b.blocks * B : L->k + SPARES, R);
+            next = next_look(L, *found);
             *end = exhausted && !is_enough(L, *found) ? RITZ_LANCZOS_EXHAUSTED
                                                       : RITZ_LANCZOS_FOUND;
             if (exhausted || is_enough(L, *found))
