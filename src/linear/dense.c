@@ -354,11 +354,19 @@ double ritz_dense_dot(const ritz_dense *A, int64_t i, const ritz_dense *B,
 ritz_status ritz_dense_take_out(const ritz_dense *left, const ritz_dense *right,
                                 ritz_dense *X)
 {
-    RITZ_OWN(ritz_dense) part = {0}, gone = {0};
+    RITZ_OWN(ritz_dense) part = {0};
 
     RITZ_CHECK(ritz_dense_mul_tn(right, X, &part));
-    RITZ_CHECK(ritz_dense_mul(left, &part, &gone));
-    ritz_dense_add(-1.0, &gone, X);
+    RITZ_REFUSE_IF(left->nrow != X->nrow || left->ncol != part.nrow,
+                   RITZ_ERR_ARGUMENT,
+                   "a part along %" PRId64 " x %" PRId64
+                   " cannot be taken out of %" PRId64 " x %" PRId64,
+                   left->nrow, left->ncol, X->nrow, X->ncol);
+    if (X->nrow > 0 && X->ncol > 0 && left->ncol > 0)
+        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, (int)X->nrow,
+                    (int)X->ncol, (int)left->ncol, -1.0, left->val,
+                    (int)X->nrow, part.val, (int)part.nrow, 1.0, X->val,
+                    (int)X->nrow);
     return RITZ_OK;
 }
 

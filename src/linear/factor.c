@@ -33,6 +33,7 @@ enum { SWEEPS = 3 };
 struct ritz_factor {
     int64_t n;
     int64_t *order; /* row k of the factor is row order[k] of A */
+    int32_t *place; /* its inverse: row i of A is row place[i] of the factor */
     ritz_supernodal *S;
 };
 
@@ -152,6 +153,19 @@ static ritz_status smallest_eigenvalue(ritz_factor *F, const double *a,
     return RITZ_OK;
 }
 
+/* Copy the order of rows, and invert it. */
+static ritz_status copy_order(const cholmod_factor *L, ritz_factor *F)
+{
+    const int64_t *order = L->Perm;
+
+    RITZ_CHECK_COPY(F->order, order, F->n);
+    RITZ_CHECK_NEW(F->place, F->n);
+    for (int64_t k = 0; k < F->n; k++)
+        F->place[order[k]] =
+            (int32_t)k; /* packing refuses more rows than that numbers */
+    return RITZ_OK;
+}
+
 /* Pack the factor, and judge whether A was positive definite. */
 static ritz_status pack_factor(ritz_factor *F, cholesky *C, const double *a,
                                int64_t *weak)
@@ -165,9 +179,10 @@ static ritz_status pack_factor(ritz_factor *F, cholesky *C, const double *a,
         row = C->L->minor < C->L->n ? order[C->L->minor] : -1;
         lambda = 0.0;
     } else {
-        RITZ_CHECK_COPY(F->order, order, F->n);
         RITZ_CHECK(weakest_pivot(C->L, a, &ratio, &row));
-        ritz_memory_return(); /* for a while parts of L are held twice */
+        if (C->L->xsize * sizeof(double) >= LARGE)
+            ritz_memory_return(); /* for a while parts of L are held twice */
+        RITZ_CHECK(copy_order(C->L, F));
         RITZ_CHECK(ritz_supernodal_new(C->L, NULL, &F->S));
         cholmod_l_free_factor(&C->L, &C->common);
         if (row >= 0 && !(ratio > RITZ_PIVOT_STRONG))
@@ -343,7 +358,7 @@ ritz_status ritz_factor_signed(const ritz_sparse *A, const int64_t *order,
     RITZ_CHECK_NEW(sign, F->n);
     RITZ_CHECK(analyse_sparse(&C, A, order));
     RITZ_CHECK(ritz_signed_cholesky(A, C.L, &C.common, sign));
-    RITZ_CHECK_COPY(F->order, (const int64_t *)C.L->Perm, F->n);
+    RITZ_CHECK(copy_order(C.L, F));
     RITZ_CHECK(ritz_supernodal_new(C.L, sign, &F->S));
     cholmod_l_free_factor(&C.L, &C.common);
     RITZ_CHECK(backward_error(F, A, &error));
@@ -357,7 +372,8 @@ ritz_status ritz_factor_signed(const ritz_sparse *A, const int64_t *order,
 }
 
 /* Copies `count` columns of X to x, or back: x has `width` numbers for each
-   row, and its rows are in the factor's order. */
+   row, and its rows are in the factor's order. Rows are taken as they are in X,
+   so that only whole rows of x are reached out of order. */
 typedef struct exchange {
     const ritz_factor *F;
     double *X, *x;
@@ -369,11 +385,11 @@ static void take_columns(int thread, int64_t from, int64_t to, void *task)
     const exchange *e = task;
 
     (void)thread;
-    for (int64_t k = from; k < to; k++) {
-        double *x = e->x + k * e->width;
+    for (int64_t i = from; i < to; i++) {
+        double *x = e->x + e->F->place[i] * e->width;
 
         for (int64_t j = 0; j < e->count; j++)
-            x[j] = e->X[e->F->order[k] + j * e->F->n];
+            x[j] = e->X[i + j * e->F->n];
         for (int64_t j = e->count; j < e->width; j++)
             x[j] = 0.0;
     }
@@ -384,9 +400,12 @@ static void return_columns(int thread, int64_t from, int64_t to, void *task)
     const exchange *e = task;
 
     (void)thread;
-    for (int64_t k = from; k < to; k++)
+    for (int64_t i = from; i < to; i++) {
+        const double *x = e->x + e->F->place[i] * e->width;
+
         for (int64_t j = 0; j < e->count; j++)
-            e->X[e->F->order[k] + j * e->F->n] = e->x[k * e->width + j];
+            e->X[i + j * e->F->n] = x[j];
+    }
 }
 
 /* The width of the block in which so many columns, or some of them, are solved
@@ -488,7 +507,7 @@ void ritz_factor_free(ritz_factor **F)
     if (!*F)
         return;
     ritz_supernodal_free(&(*F)->S);
-    RITZ_FREE((*F)->order);
+    RITZ_FREE((*F)->order, (*F)->place);
     free(*F);
     *F = NULL;
 }
