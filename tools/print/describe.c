@@ -1,5 +1,6 @@
 #include "print/print.h"
 
+#include "base/bytes.h"
 #include "base/tolerances.h"
 
 #include <complex.h>
@@ -35,33 +36,39 @@ static void set_checksum(cli_run *run, const char *name, const char text[PARTS],
     sink_end(run);
 }
 
-void checksum_sparse(cli_run *run, const char *name, const ritz_sparse *A,
-                     char out[RITZ_DIGEST_SIZE])
+ritz_status checksum_sparse(cli_run *run, const char *name,
+                            const ritz_sparse *A, char out[RITZ_DIGEST_SIZE])
 {
-    char text[PARTS];
+    char text[PARTS], sum[RITZ_DIGEST_SIZE];
     int64_t nnz = A->colptr[A->ncol];
+    ritz_digest_work *values = NULL;
 
-    out[0] = '\0';
+    *out = '\0';
     if (run->unread)
-        return;
+        return RITZ_OK;
+    RITZ_CHECK(
+        ritz_digest_begin(A->val, nnz * (int64_t)sizeof *A->val, &values));
     snprintf(text, sizeof text, "%ld %ld", A->nrow, A->ncol);
     add_part(text, A->colptr, A->ncol + 1, sizeof *A->colptr);
     add_part(text, A->rowind, nnz, sizeof *A->rowind);
-    add_part(text, A->val, nnz, sizeof *A->val);
+    ritz_digest_end(&values, sum);
+    sink_append(text, PARTS, " %s", sum);
     set_checksum(run, name, text, out);
+    return RITZ_OK;
 }
 
 /* A matrix: a line, and its checksum. An absent one is passed over. */
-static void describe_sparse(cli_run *run, const char *name,
-                            const ritz_sparse *A)
+static ritz_status describe_sparse(cli_run *run, const char *name,
+                                   const ritz_sparse *A)
 {
     char sum[RITZ_DIGEST_SIZE];
 
     if (!A->colptr)
-        return;
-    checksum_sparse(run, name, A, sum);
+        return RITZ_OK;
+    RITZ_CHECK(checksum_sparse(run, name, A, sum));
     sink_field(run, name, "", "%ld x %ld, %ld entries, sha256 %.12s...",
                A->nrow, A->ncol, A->colptr[A->ncol], sum);
+    return RITZ_OK;
 }
 
 static void describe_dense(cli_run *run, const char *name, const ritz_dense *A)
@@ -235,16 +242,16 @@ ritz_status describe_component(cli_run *run, const ritz_component *c)
     if (scalar > 0)
         sink_field(run, "scalar points", "", "%ld", scalar);
     describe_units(run, c->units);
-    describe_sparse(run, "K", &c->K);
-    describe_sparse(run, "M", &c->M);
-    describe_sparse(run, "D", &c->D);
+    RITZ_CHECK(describe_sparse(run, "K", &c->K));
+    RITZ_CHECK(describe_sparse(run, "M", &c->M));
+    RITZ_CHECK(describe_sparse(run, "D", &c->D));
     describe_skew(run, c->D.colptr ? ritz_sparse_skew(&c->D) : 0.0);
-    describe_sparse(run, "K4", &c->K4);
+    RITZ_CHECK(describe_sparse(run, "K4", &c->K4));
     for (int64_t k = 0; k < c->num_loads; k++) {
         char name[RITZ_NAME_SIZE + 4];
 
         snprintf(name, sizeof name, "KG/%s", c->load[k].name);
-        describe_sparse(run, name, &c->load[k].KG);
+        RITZ_CHECK(describe_sparse(run, name, &c->load[k].KG));
     }
     describe_damping(run, c->damping);
     describe_dampers(run, &c->dampers);
@@ -690,8 +697,8 @@ ritz_status describe_states(cli_run *run, const ritz_state_space *states)
     describe_dense(run, "C", &states->C);
     describe_dense(run, "D", &states->D);
     describe_dense(run, "E", &states->E);
-    describe_sparse(run, "A", &states->sA);
-    describe_sparse(run, "E", &states->sE);
+    RITZ_CHECK(describe_sparse(run, "A", &states->sA));
+    RITZ_CHECK(describe_sparse(run, "E", &states->sE));
     describe_damping(run, states->damping);
     describe_io(run, &io);
     if (!ritz_state_space_is_sparse(states))

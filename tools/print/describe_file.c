@@ -11,7 +11,7 @@ static ritz_status describe_values(cli_run *run, const ritz_foreign *file,
     bool square = false;
 
     RITZ_CHECK(ritz_foreign_take(file, k, &a));
-    checksum_sparse(run, a.name, &a.A, sum);
+    RITZ_CHECK(checksum_sparse(run, a.name, &a.A, sum));
     square = a.A.nrow == a.A.ncol;
     snprintf(form, sizeof form, "%s%s",
              a.symmetric ? "symmetric"

@@ -386,9 +386,11 @@ void describe_dampers(cli_run *run, const ritz_dampers *dampers);
  *
  * NROW and NCOL in decimal, the others SHA-256 in hexadecimal of the array's
  * little-endian bytes (i64, i64, f64).
+ *
+ * @param[out] out  "" with --quiet and without --json: nothing is computed then
  */
-void checksum_sparse(cli_run *run, const char *name, const ritz_sparse *A,
-                     char out[RITZ_DIGEST_SIZE]);
+ritz_status checksum_sparse(cli_run *run, const char *name,
+                            const ritz_sparse *A, char out[RITZ_DIGEST_SIZE]);
 
 /**
  * Follow the modes of a system, say what happened to them up to the end of the
