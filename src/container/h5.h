@@ -179,6 +179,18 @@ ritz_status ritz_h5_read(hid_t at, const char *name, hid_t type,
 uint64_t ritz_h5_sum(int64_t bytes, const void *values, uint64_t sum);
 int64_t ritz_h5_sum_end(uint64_t sum);
 
+/**
+ * Fletcher-32 of @p bytes, a multiple of 8, on a little-endian processor: the
+ * checksum that HDF5 appends to a chunk.
+ */
+uint32_t ritz_h5_fletcher32(int64_t bytes, const void *values);
+
+/** Write all values of an empty set that was created for them, of type
+ * @p memory; the file has the bytes that H5Dwrite() would give it. */
+ritz_status ritz_h5_write_values(hid_t set, const char *name, hid_t memory,
+                                 const ritz_h5_shape *shape,
+                                 const void *values);
+
 /** A dense matrix, which h5py shows as shape (nrow, ncol). */
 ritz_status ritz_h5_write_dense(hid_t at, const char *name,
                                 const ritz_dense *A);

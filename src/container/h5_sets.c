@@ -324,16 +324,14 @@ ritz_status ritz_h5_write(hid_t at, const char *name, hid_t type,
 {
     RITZ_OWN(hid_t) memory = H5Tget_native_type(type, H5T_DIR_ASCEND);
     RITZ_OWN(hid_t) set = 0;
-    herr_t result = 0;
+    ritz_status status = RITZ_OK;
     sealing seal;
 
     RITZ_CHECK(create_set(at, name, type, shape, &set));
     begin_seal(count_bytes(&shape, memory), values, &seal);
-    if (ritz_h5_volume(&shape, 1) > 0)
-        result = H5Dwrite(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
+    status = ritz_h5_write_values(set, name, memory, &shape, values);
     ritz_aside_end(&seal.aside);
-    RITZ_REFUSE_IF(result < 0, RITZ_ERR_FILE,
-                   "cannot write '%s', is the disk full?", name);
+    RITZ_CHECK(status);
     RITZ_CHECK(write_seal(set, name, &seal));
     return flush_set(set, name);
 }
