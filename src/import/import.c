@@ -31,6 +31,19 @@ static bool is_in_order(const ritz_part *part, const int64_t *stays)
     return true;
 }
 
+/* Whether the matrix of a part is that of the component as it is. */
+static bool is_complete(const ritz_part *part, const int64_t *stays, int64_t n)
+{
+    const ritz_sparse *A = &part->matrix.A;
+    bool whole = A->ncol == n;
+
+    for (int64_t j = 0; j < A->ncol && whole; j++)
+        whole = stays[part->place[j]] == j;
+    for (int64_t p = 0; whole && p < A->colptr[A->ncol]; p++)
+        whole = A->val[p] != 0.0;
+    return whole;
+}
+
 /* Remove the other rows and columns of such a part within its own arrays, which
  * `out` takes over. */
 static ritz_status close_up_part(ritz_part *part, const int64_t *stays,
@@ -80,6 +93,10 @@ static ritz_status scatter_part(ritz_part *part, const int64_t *stays,
     RITZ_OWN_ARRAY int64_t *col = NULL;
     RITZ_OWN_ARRAY double *val = NULL;
 
+    if (is_complete(part, stays, n)) {
+        RITZ_MOVE(*out, part->matrix.A);
+        return RITZ_OK;
+    }
     if (is_in_order(part, stays))
         return close_up_part(part, stays, n, out);
     RITZ_CHECK_NEW(row, nnz);

@@ -288,9 +288,13 @@ static int compare_lines(const void *left, const void *right)
 static ritz_status check_distinct(const char *path, const ritz_roster *named)
 {
     char name[RITZ_DOF_NAME_SIZE];
+    bool ascend = true;
 
-    qsort(named->place, (size_t)named->count, sizeof *named->place,
-          compare_lines);
+    for (int64_t k = 1; k < named->count && ascend; k++)
+        ascend = compare_lines(&named->place[k - 1], &named->place[k]) < 0;
+    if (!ascend)
+        qsort(named->place, (size_t)named->count, sizeof *named->place,
+              compare_lines);
     for (int64_t k = 1; k < named->count; k++)
         RITZ_REFUSE_IF(
             ritz_dof_compare(&named->place[k - 1], &named->place[k]) == 0,
@@ -531,7 +535,15 @@ void ritz_part_mark(const ritz_part *part, unsigned char bit,
                     unsigned char *mark)
 {
     const ritz_sparse *A = &part->matrix.A;
+    int64_t marked = 0;
 
+    for (int64_t j = 0; j < A->ncol; j++)
+        if (ritz_sparse_diagonal(A, j) != 0.0) {
+            mark[part->place[j]] |= bit;
+            marked++;
+        }
+    if (marked == A->ncol) /* the usual case: there is no row left */
+        return;
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
             if (A->val[p] != 0.0) {

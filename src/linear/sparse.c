@@ -438,25 +438,66 @@ static double pass_unpaired(const ritz_sparse *A, int64_t i, int64_t row,
  * A(j,i) stand in column i by ascending row j: so next[i], the next entry of
  * column i to be compared, only moves forward.
  */
+static double sweep_column(const ritz_sparse *A, int64_t j, int64_t from,
+                           int64_t to, int64_t *next)
+{
+    const int64_t begin = A->colptr[j];
+    const int64_t after = j < from ? from - 1 : j; /* rows behind this one */
+    double gap = 0.0;
+
+    for (int64_t p = begin + ritz_lower_bound(A->colptr[j + 1] - begin,
+                                              A->rowind + begin, after + 1);
+         p < A->colptr[j + 1] && A->rowind[p] < to; p++) {
+        int64_t i = A->rowind[p];
+        double other = 0.0;
+
+        gap = ritz_larger(gap, pass_unpaired(A, i, j, next));
+        if (next[i] < A->colptr[i + 1] && A->rowind[next[i]] == j)
+            other = A->val[next[i]++];
+        gap = ritz_larger(gap, fabs(A->val[p] - other));
+    }
+    return gap;
+}
+
+/* A thread compares the entries A(i,j) of its rows i. */
+typedef struct sweeping {
+    const ritz_sparse *A;
+    int64_t *next;
+    double gap[RITZ_TEAM_SHARES]; /* the largest of each thread */
+} sweeping;
+
+static void sweep_rows(int thread, int64_t from, int64_t to, void *task)
+{
+    sweeping *all = task;
+    const ritz_sparse *A = all->A;
+    double gap = 0.0;
+
+    for (int64_t j = 0; j < to; j++) {
+        if (j >= from)
+            gap = ritz_larger(gap, pass_unpaired(A, j, j, all->next));
+        gap = ritz_larger(gap, sweep_column(A, j, from, to, all->next));
+    }
+    all->gap[thread] = gap;
+}
+
+/* Threads that gain from a pass over the entries; at most RITZ_TEAM_SHARES. */
+static int sweep_threads(const ritz_sparse *A)
+{
+    enum { ENTRIES = 1 << 18 }; /* a fraction of a millisecond */
+    const int64_t gain = A->colptr[A->ncol] / ENTRIES;
+
+    return ritz_team_ready(gain < RITZ_TEAM_SHARES ? gain : RITZ_TEAM_SHARES);
+}
+
 double ritz_sparse_sweep_asymmetry(const ritz_sparse *A, int64_t *next)
 {
+    sweeping all = {.A = A, .next = next};
     double gap = 0.0;
 
     memcpy(next, A->colptr, (size_t)A->ncol * sizeof *next);
-    for (int64_t j = 0; j < A->ncol; j++) {
-        gap = ritz_larger(gap, pass_unpaired(A, j, j, next));
-        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
-            int64_t i = A->rowind[p];
-            double other = 0.0;
-
-            if (i <= j)
-                continue;
-            gap = ritz_larger(gap, pass_unpaired(A, i, j, next));
-            if (next[i] < A->colptr[i + 1] && A->rowind[next[i]] == j)
-                other = A->val[next[i]++];
-            gap = ritz_larger(gap, fabs(A->val[p] - other));
-        }
-    }
+    ritz_team_over(sweep_threads(A), A->ncol, sweep_rows, &all);
+    for (int k = 0; k < RITZ_TEAM_SHARES; k++)
+        gap = ritz_larger(gap, all.gap[k]);
     return gap > 0.0 ? gap / ritz_sparse_max(A) : 0.0;
 }
 
