@@ -48,7 +48,7 @@ static bool is_triangle(const ritz_triplets *t)
     bool above = false;
     bool below = false;
 
-    for (int64_t k = 0, j = 0; k < t->count; j++)
+    for (int64_t k = 0, j = 0; k < t->count && !(above && below); j++)
         for (int64_t end = k + t->counts[j + 1]; k < end; k++) {
             above = above || t->row[k] < j;
             below = below || t->row[k] > j;

@@ -28,10 +28,25 @@
  */
 enum { NULL_COLUMNS = 32000000 };
 
+/* "column 1 of 'KAA'", without the cost of a format in each column. */
 static void name_column(ritz_output4_build *build)
 {
-    snprintf(build->where, sizeof build->where, "column %" PRId64 " of '%s'",
-             build->column + 1, build->header.name);
+    const size_t length = strlen(build->header.name);
+    char digits[20];
+    size_t first = sizeof digits;
+    int64_t left = build->column + 1;
+    char *at = build->where;
+
+    do {
+        digits[--first] = (char)('0' + left % 10);
+        left /= 10;
+    } while (left > 0);
+    memcpy(at, "column ", 7);
+    memcpy(at + 7, digits + first, sizeof digits - first);
+    at += 7 + sizeof digits - first;
+    memcpy(at, " of '", 5);
+    memcpy(at + 5, build->header.name, length);
+    memcpy(at + 5 + length, "'", 2);
 }
 
 /* How headers of strings are read at first. */
@@ -218,6 +233,7 @@ typedef struct ritz_output4_shares {
     int64_t count;
     ritz_output4_share share[RITZ_TEAM_SHARES];
     ritz_output4_header header;
+    const char *end; /* the byte behind the matrix */
 } ritz_output4_shares;
 
 static void ritz_output4_shares_free(ritz_output4_shares *all)
@@ -246,31 +262,34 @@ static void cut_shares(const ritz_output4_reader *r, const char *end,
 }
 
 /*
- * How many entries a share gets room for. The first share gets room for all
- * entries of the matrix, because those of the other shares are copied behind
- * its own; another share gets room for as many as its bytes can hold.
+ * How many entries a share gets room for: as many as its bytes can hold. The
+ * first share gets room for all entries of the matrix, because those of the
+ * other shares are copied behind its own. Room that is not used takes no
+ * memory.
  */
-static int64_t share_room(const ritz_output4_reader *r,
-                          const ritz_output4_header *header,
-                          const ritz_output4_share *share, bool first)
+static int64_t share_room(const ritz_output4_shares *all,
+                          const ritz_output4_share *share)
 {
-    int64_t size = (share->stop ? share->stop : r->text.end) - share->r.text.at;
+    const ritz_output4_reader *r = &share->r;
+    const char *stop =
+        share->stop && share != all->share ? share->stop : all->end;
+    int64_t each = r->width > 0 ? r->width : r->real;
+    int64_t most = (stop - r->text.at) / (each * all->header.numbers);
+    int64_t nrow = all->header.nrow;
 
-    return first
-               ? most_entries(r, header)
-               : size / ((r->width > 0 ? r->width : r->real) * header->numbers);
+    return nrow > 0 && most / nrow < all->header.ncol ? most
+                                                      : nrow * all->header.ncol;
 }
 
-static ritz_status begin_share(const ritz_output4_header *header, bool first,
+static ritz_status begin_share(const ritz_output4_shares *all,
                                ritz_output4_share *share)
 {
     const ritz_output4_reader *r = &share->r;
     ritz_output4_build *build = &share->build;
 
-    RITZ_CHECK(begin_matrix(header, r->text.end - r->begin, build));
+    RITZ_CHECK(begin_matrix(&all->header, r->text.end - r->begin, build));
     build->wide = r->wide;
-    return ritz_triplets_reserve(&build->entries,
-                                 share_room(r, header, share, first));
+    return ritz_triplets_reserve(&build->entries, share_room(all, share));
 }
 
 static void read_share(int64_t k, void *task)
@@ -278,7 +297,7 @@ static void read_share(int64_t k, void *task)
     ritz_output4_shares *all = task;
     ritz_output4_share *share = &all->share[k];
 
-    share->status = begin_share(&all->header, k == 0, share);
+    share->status = begin_share(all, share);
     if (share->status == RITZ_OK)
         share->status = read_until(&share->r, &share->build, share->stop);
 }
@@ -338,7 +357,7 @@ static bool read_in_shares(const ritz_output4_reader *r,
 {
     const int threads =
         ritz_team_ready(end ? (end - r->text.at) / SHARE_BYTES : 1);
-    RITZ_OWN(ritz_output4_shares) all = {.header = *header};
+    RITZ_OWN(ritz_output4_shares) all = {.header = *header, .end = end};
     int64_t total = 0;
 
     if (threads < 2)

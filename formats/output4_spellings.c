@@ -92,6 +92,33 @@ static ritz_status begin_rows(ritz_output4_build *build, int64_t row,
     return ritz_triplets_reserve(&build->entries, count);
 }
 
+/*
+ * Append @p count real values, little-endian doubles at @p at, from row @p row
+ * on, if all are finite and none is zero. There is room for them.
+ *
+ * @return false, and nothing is appended, if that is not so
+ */
+static bool put_doubles(ritz_output4_build *build, int64_t row, int64_t count,
+                        const char *at)
+{
+    ritz_triplets *to = &build->entries;
+    double *re = to->re + to->count;
+    bool usual = true;
+
+    memcpy(re, at, (size_t)count * sizeof *re);
+    for (int64_t k = 0; k < count; k++) {
+        const bool is = isfinite(re[k]) && re[k] != 0.0;
+
+        to->row[to->count + k] = row + k;
+        usual = usual && is;
+    }
+    if (!usual)
+        return false;
+    to->counts[build->column + 1] += count;
+    to->count += count;
+    return true;
+}
+
 /* Append a value that there is room for; it must be finite. */
 static ritz_status put_value(ritz_output4_build *build, int64_t row, double re,
                              double im)
@@ -417,6 +444,25 @@ static ritz_status skip_last(ritz_output4_reader *t,
     return RITZ_OK;
 }
 
+/* Whether a line may hold three integers: as words, or in fields of 8 or 16
+ * letters that touch. Headers of strings have two words at most, and are by far
+ * the most lines without a point. */
+static bool may_hold_three(const char *at, const char *end)
+{
+    int words = 0;
+    bool inside = false;
+
+    if (end - at == 24 || end - at == 48)
+        return true;
+    for (; at < end; at++) {
+        const bool blank = *at == ' ' || *at == '\t' || *at == '\0';
+
+        words += !blank && !inside;
+        inside = !blank;
+    }
+    return words == 3;
+}
+
 /*
  * Strings of a sparse column, up to the header of the next one, which alone has
  * three integers: headers of strings have one or two, numbers have a point.
@@ -431,6 +477,7 @@ static bool skip_strings(ritz_output4_reader *t)
             return false;
         if (!memchr(t->text.line, '.',
                     (size_t)(t->text.line_end - t->text.line)) &&
+            may_hold_three(t->text.line, t->text.line_end) &&
             take_integers(t, 3, n)) {
             t->text = before;
             return true;
@@ -625,6 +672,12 @@ static ritz_status read_record_numbers(ritz_output4_reader *b,
     int64_t numbers = build->header.numbers;
 
     RITZ_CHECK(begin_rows(build, row, reals / numbers));
+    if (__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__ && !b->big_endian &&
+        b->real == 8 && numbers == 1 && reals > 0 &&
+        put_doubles(build, row, reals, b->data)) {
+        b->data += reals * b->real;
+        return RITZ_OK;
+    }
     for (int64_t k = 0; k < reals; k += numbers) {
         double re = load_real(b, b->data);
         double im = numbers == 2 ? load_real(b, b->data + b->real) : 0.0;
@@ -673,13 +726,46 @@ static ritz_status read_record_dense(ritz_output4_reader *b,
     return read_record_numbers(b, build, n[1] - 1, reals);
 }
 
-/* The first record that begins at `from` or behind it, found by passing from
- * record to record by their lengths. */
+/* Whether `LOOKED_AT` records in a row begin at `at`, whose lengths stand at
+ * both ends and whose first numbers ascend, as those of columns do. */
+static bool looks_like_columns(const ritz_output4_reader *b, const char *at)
+{
+    enum { LOOKED_AT = 4 };
+    int64_t column = 0;
+
+    for (int k = 0; k < LOOKED_AT; k++) {
+        const int64_t left = b->text.end - at - 2 * b->mark;
+        int64_t size = 0, number = 0;
+
+        if (left < 3 * b->integer)
+            return false;
+        size = load_integer(b, at, b->mark);
+        if (size < 3 * b->integer || size > left ||
+            load_integer(b, at + b->mark + size, b->mark) != size)
+            return false;
+        number = load_integer(b, at + b->mark, b->integer);
+        if (number <= column)
+            return false;
+        column = number;
+        at += size + 2 * b->mark;
+    }
+    return true;
+}
+
+/* A record that begins at `from` or behind it: the first place that looks like
+ * columns, or, if there is none nearby, found by passing from record to record
+ * by their lengths. */
 static const char *find_record(const ritz_output4_reader *b, const char *from)
 {
+    enum { NEARBY = 1 << 16 };
     ritz_output4_reader ahead = *b;
     ritz_binary_record passed = {0};
+    const char *at = from + (b->text.at - from) % 4; /* as records are */
 
+    at = at < from ? at + 4 : at;
+    for (int64_t k = 0; k < NEARBY; k += 4)
+        if (b->text.end - at > k && looks_like_columns(b, at + k))
+            return at + k;
     while (ahead.text.at < from)
         if (take_record(&ahead, &passed) != RITZ_OK || passed.size < 0)
             return NULL;

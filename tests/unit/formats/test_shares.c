@@ -139,6 +139,37 @@ static void threads_read_binary_output4_as_one_does(void **state)
     }
 }
 
+/* Values whose bytes are records of columns 1, 2, ...: 12 N 1 1 12. */
+static void fill_with_records(ritz_sparse *A)
+{
+    int64_t count = 0;
+
+    for (int64_t j = 0; j < A->ncol; j++) {
+        int32_t word[2 * ROWS];
+
+        for (int32_t k = 0; k < 2 * ROWS; k++)
+            word[k] = k % 5 == 1                 ? k / 5 + 1
+                      : k % 5 == 2 || k % 5 == 3 ? 1
+                                                 : 12;
+        memcpy(A->val + count, word, sizeof word);
+        for (int64_t i = 0; i < ROWS; i++)
+            A->rowind[count++] = i;
+        A->colptr[j + 1] = count;
+    }
+}
+
+static void values_like_records_mislead_no_thread(void **state)
+{
+    static const ritz_output4_style style = {0};
+    RITZ_OWN(ritz_matrix) m = {0};
+    (void)state;
+
+    make_matrix(350, &m);
+    fill_with_records(&m.A);
+    assert_ok(ritz_output4_write("shares.op4", 1, &m, &style));
+    compare_damages("shares.op4");
+}
+
 static void threads_read_matrix_market_as_one_does(void **state)
 {
     RITZ_OWN(ritz_matrix) m = {0};
@@ -236,6 +267,8 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test_teardown(threads_read_text_output4_as_one_does,
                               one_thread),
     cmocka_unit_test_teardown(threads_read_binary_output4_as_one_does,
+                              one_thread),
+    cmocka_unit_test_teardown(values_like_records_mislead_no_thread,
                               one_thread),
     cmocka_unit_test_teardown(threads_read_matrix_market_as_one_does,
                               one_thread),
