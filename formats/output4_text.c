@@ -1,134 +1,9 @@
-/*
- * NASTRAN OUTPUT4: matrices by columns, as text and as binary records.
- *
- * A sparse column is a sequence of strings, each consecutive rows behind one or
- * two integers. There are three readings of these, w words to a value:
- *
- *     words    IS = 65536 (w + 1) + row
- *     values   IS = 65536 v + row            NASTRAN-95, v counts values
- *     bigmat   w + 1, row
- *
- * Headers do not always tell which (a bigmat of few rows may be unmarked), so
- * that one is taken by which the strings of a column add up to its word count.
- */
-#include "formats/bytes.h"
-#include "formats/output4.h"
+/* NASTRAN OUTPUT4 as text. */
+#include "formats/output4_strings.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
-
-/* The header that NCOL NROW FORM TYPE and a padded name state. @return false
- * if no matrix has such numbers */
-static bool set_header(const int64_t n[static 4], const char *name,
-                       int64_t length, ritz_output4_header *out)
-{
-    int64_t used = 0;
-
-    if (n[0] < 0 || n[1] == INT64_MIN || n[3] < 1 || n[3] > 4)
-        return false;
-    *out = (ritz_output4_header){
-        .ncol = n[0],
-        .nrow = n[1] < 0 ? -n[1] : n[1],
-        .bigmat = n[1] < 0 || n[1] >= 65536,
-        .form = n[2],
-        .type = n[3],
-        .numbers = n[3] > 2 ? 2 : 1,
-        .symmetric =
-            n[2] == RITZ_OUTPUT4_SYMMETRIC && (n[1] == n[0] || n[1] == -n[0]),
-    };
-    for (int64_t k = 0; k < length && used < RITZ_NAME_SIZE - 1; k++)
-        if (name[k] > ' ' && name[k] < 127)
-            out->name[used++] = name[k];
-    return true;
-}
-
-static int64_t count_integers(const ritz_output4_build *build)
-{
-    return build->rule == RITZ_OUTPUT4_BIGMAT ? 2 : 1;
-}
-
-/*
- * What a string's header says.
- *
- * @return false if that is not possible within @p left words
- */
-static bool decode_string(const ritz_output4_build *build,
-                          const int64_t *integers, int64_t left,
-                          ritz_output4_string *out)
-{
-    bool pair = build->rule == RITZ_OUTPUT4_BIGMAT;
-    int64_t count = pair ? integers[0] : integers[0] / 65536;
-    int64_t row = pair ? integers[1] : integers[0] % 65536;
-    int64_t value = build->header.numbers * build->wide; /* words of one */
-    int64_t words = count - 1;
-
-    if (count < 1 || count > left)
-        return false;
-    if (build->rule == RITZ_OUTPUT4_VALUES)
-        words = count * value;
-    *out = (ritz_output4_string){
-        .row = row - 1,
-        .reals = words / build->wide,
-        .words = words + count_integers(build),
-    };
-    return words >= 1 && words % value == 0 && out->words <= left && row >= 1 &&
-           row - 1 + words / value <= build->header.nrow;
-}
-
-/* Make room for @p count values from @p row, from 0. */
-static ritz_status begin_rows(ritz_output4_build *build, int64_t row,
-                              int64_t count)
-{
-    RITZ_REFUSE_IF(row < build->below, RITZ_ERR_FORMAT,
-                   "rows of %s do not ascend", build->where);
-    RITZ_REFUSE_IF(count > build->header.nrow ||
-                       row > build->header.nrow - count,
-                   RITZ_ERR_FORMAT,
-                   "%s has %" PRId64 " values from row %" PRId64
-                   ", but the matrix %" PRId64 " rows",
-                   build->where, count, row + 1, build->header.nrow);
-    build->below = row + count;
-    return ritz_triplets_reserve(&build->entries, count);
-}
-
-/*
- * Append @p count real values, little-endian doubles at @p at, from row @p row
- * on, if all are finite and none is zero. There is room for them.
- *
- * @return false, and nothing is appended, if that is not so
- */
-static bool put_doubles(ritz_output4_build *build, int64_t row, int64_t count,
-                        const char *at)
-{
-    ritz_triplets *to = &build->entries;
-    double *re = to->re + to->count;
-    bool usual = true;
-
-    memcpy(re, at, (size_t)count * sizeof *re);
-    for (int64_t k = 0; k < count; k++) {
-        const bool is = isfinite(re[k]) && re[k] != 0.0;
-
-        to->row[to->count + k] = row + k;
-        usual = usual && is;
-    }
-    if (!usual)
-        return false;
-    to->counts[build->column + 1] += count;
-    to->count += count;
-    return true;
-}
-
-/* Append a value that there is room for; it must be finite. */
-static ritz_status put_value(ritz_output4_build *build, int64_t row, double re,
-                             double im)
-{
-    RITZ_REFUSE_IF(!isfinite(re) || !isfinite(im), RITZ_ERR_FORMAT,
-                   "row %" PRId64 " of %s is not finite", row + 1,
-                   build->where);
-    ritz_triplets_put_value(&build->entries, row, build->column, re, im);
-    return RITZ_OK;
-}
 
 /* ---- text --------------------------------------------------------------- */
 
@@ -281,7 +156,7 @@ static bool read_header(ritz_output4_reader *t, ritz_output4_header *out)
             !read_label(name, t->text.line_end, t, &behind))
             continue;
         t->wide = t->widths = 2 - n[3] % 2;
-        return set_header(n, name, behind - name, out);
+        return ritz_output4_set_header(n, name, behind - name, out);
     }
     return false;
 }
@@ -347,7 +222,7 @@ static ritz_status read_text_numbers(ritz_output4_reader *t,
                    "%s wants %" PRId64
                    " numbers, more than are left in the file",
                    build->where, reals);
-    RITZ_CHECK(begin_rows(build, row, reals / numbers));
+    RITZ_CHECK(ritz_output4_begin_rows(build, row, reals / numbers));
     for (int64_t done_ = 0; done_ < reals;) {
         int64_t here =
             reals - done_ < t->per_line ? reals - done_ : t->per_line;
@@ -359,7 +234,8 @@ static ritz_status read_text_numbers(ritz_output4_reader *t,
             RITZ_CHECK(read_number(t, build, k, &number[held++]));
             if (held < numbers)
                 continue;
-            RITZ_CHECK(put_value(build, row++, number[0], number[1]));
+            RITZ_CHECK(
+                ritz_output4_put_value(build, row++, number[0], number[1]));
             held = 0;
         }
         RITZ_REFUSE_IF(
@@ -385,8 +261,8 @@ static ritz_status take_text_string(ritz_output4_reader *t,
                    "%s ends after %" PRId64 " of %" PRId64 " words",
                    build->where, words - left, words);
     RITZ_REFUSE_IF(
-        !take_integers(t, count_integers(build), integers) ||
-            !decode_string(build, integers, left, out),
+        !take_integers(t, ritz_output4_count_integers(build), integers) ||
+            !ritz_output4_decode_string(build, integers, left, out),
         RITZ_ERR_FORMAT,
         "line %" PRId64 ": '%.*s' begins no string of %s, of which %" PRId64
         " words are to come",
@@ -517,268 +393,4 @@ const ritz_output4_spelling ritz_output4_text = {
     .skip_column = skip_column,
     .find_column = find_text_column,
     .skip_last = skip_last,
-};
-
-/* ---- binary ------------------------------------------------------------- */
-
-/*
- * Unformatted records of Fortran: length, bytes, length again.
- *
- *     NCOL NROW FORM TYPE NAME(2 words)    24 bytes, or 48 of 8-byte integers
- *     ICOL IROW NW data                    IROW = 0: data are strings
- *
- * Data fill their record: where NW disagrees the record is right. Byte order
- * and size of integers follow from the first length. Lengths are integers of 4
- * bytes, of 8 by some compilers; records of no bytes may stand between others.
- */
-
-typedef struct ritz_binary_record {
-    const char *at;
-    int64_t size;
-} ritz_binary_record;
-
-/** @p size bytes, 4 or 8, as an integer. */
-static inline int64_t load_integer(const ritz_output4_reader *b, const char *at,
-                                   int64_t size)
-{
-    uint64_t bits =
-        ritz_bytes_bits((const unsigned char *)at, size, b->big_endian);
-
-    return size == 4 ? (int64_t)(int32_t)(uint32_t)bits : (int64_t)bits;
-}
-
-/** @p count integers one after the other. */
-static void load_integers(const ritz_output4_reader *b, const char *at,
-                          int64_t count, int64_t *out)
-{
-    for (int64_t k = 0; k < count; k++)
-        out[k] = load_integer(b, at + k * b->integer, b->integer);
-}
-
-/* How the file is spelled, from the length of its first record. */
-static bool find_records(ritz_output4_reader *b)
-{
-    int64_t size = b->text.end - b->begin;
-
-    for (int k = 0; k < 8 && size >= 4; k++) {
-        b->big_endian = k & 1;
-        b->integer = k & 2 ? 8 : 4;
-        b->mark = k & 4 ? 4 : 8;
-        if (size >= b->mark &&
-            load_integer(b, b->begin, b->mark) == 6 * b->integer)
-            return true;
-    }
-    return false;
-}
-
-/* Take a record that is not empty; its size is -1 at the end of the file. */
-static ritz_status take_record(ritz_output4_reader *b, ritz_binary_record *out)
-{
-    int64_t size = 0;
-
-    while (size == 0) {
-        int64_t left = b->text.end - b->text.at;
-
-        *out = (ritz_binary_record){.size = -1};
-        if (left == 0)
-            return RITZ_OK;
-        RITZ_REFUSE_IF(left < 2 * b->mark, RITZ_ERR_FORMAT,
-                       "byte %td: %" PRId64 " bytes are left, too few for "
-                       "a record",
-                       b->text.at - b->begin, left);
-        size = load_integer(b, b->text.at, b->mark);
-        RITZ_REFUSE_IF(size < 0 || size > left - 2 * b->mark, RITZ_ERR_FORMAT,
-                       "byte %td: a record of %" PRId64
-                       " bytes begins, but %" PRId64 " are left",
-                       b->text.at - b->begin, size, left - b->mark);
-        *out = (ritz_binary_record){b->text.at + b->mark, size};
-        b->text.at += size + 2 * b->mark;
-        RITZ_REFUSE_IF(load_integer(b, b->text.at - b->mark, b->mark) != size,
-                       RITZ_ERR_FORMAT,
-                       "byte %td: a record of %" PRId64
-                       " bytes ends with another length",
-                       b->text.at - b->mark - b->begin, size);
-    }
-    return RITZ_OK;
-}
-
-static ritz_status take_record_header(ritz_output4_reader *b,
-                                      ritz_output4_header *out, bool *found)
-{
-    int64_t at = b->text.at - b->begin;
-    ritz_binary_record first = {0};
-    int64_t n[4] = {0};
-
-    RITZ_CHECK(take_record(b, &first));
-    *found = first.size >= 0;
-    if (!*found)
-        return RITZ_OK;
-    if (first.size == 6 * b->integer)
-        load_integers(b, first.at, 4, n);
-    RITZ_REFUSE_IF(
-        !set_header(n, first.at + 4 * b->integer, 2 * b->integer, out),
-        RITZ_ERR_FORMAT,
-        "byte %td: a record of %" PRId64 " bytes begins no matrix",
-        first.at - b->begin, first.size);
-    out->at = at;
-    b->real = out->type % 2 == 1 && b->integer == 4 ? 4 : 8;
-    b->digits = b->real == 4 ? 7 : 17;
-    b->wide = b->real / b->integer;
-    b->widths = 1;
-    snprintf(b->format, sizeof b->format, "%s-endian, %d-byte integers",
-             b->big_endian ? "big" : "little", (int)b->integer);
-    return RITZ_OK;
-}
-
-static double load_real(const ritz_output4_reader *b, const char *at)
-{
-    const unsigned char *bytes = (const unsigned char *)at;
-
-    return b->real == 4 ? ritz_bytes_single(bytes, b->big_endian)
-                        : ritz_bytes_double(bytes, b->big_endian);
-}
-
-/* One record after the header. */
-static ritz_status take_record_column(ritz_output4_reader *b,
-                                      const ritz_output4_build *build,
-                                      int64_t n[3])
-{
-    ritz_binary_record column = {0};
-    bool whole = false;
-
-    RITZ_CHECK(take_record(b, &column));
-    RITZ_REFUSE_IF(column.size < 0, RITZ_ERR_FORMAT,
-                   "'%s' ends after column %" PRId64 " of %" PRId64,
-                   build->header.name, build->column + 1, build->header.ncol);
-    whole = column.size >= 3 * b->integer;
-    if (whole)
-        load_integers(b, column.at, 3, n);
-    RITZ_REFUSE_IF(
-        !whole || (n[0] <= build->header.ncol && column.size % b->integer != 0),
-        RITZ_ERR_FORMAT,
-        "byte %td: a record of %" PRId64 " bytes is no column of '%s'",
-        column.at - b->begin, column.size, build->header.name);
-    b->data = column.at + 3 * b->integer;
-    b->data_end = column.at + column.size;
-    if (n[1] == 0)
-        n[2] = (b->data_end - b->data) / b->integer;
-    return RITZ_OK;
-}
-
-static ritz_status read_record_numbers(ritz_output4_reader *b,
-                                       ritz_output4_build *build, int64_t row,
-                                       int64_t reals)
-{
-    int64_t numbers = build->header.numbers;
-
-    RITZ_CHECK(begin_rows(build, row, reals / numbers));
-    if (__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__ && !b->big_endian &&
-        b->real == 8 && numbers == 1 && reals > 0 &&
-        put_doubles(build, row, reals, b->data)) {
-        b->data += reals * b->real;
-        return RITZ_OK;
-    }
-    for (int64_t k = 0; k < reals; k += numbers) {
-        double re = load_real(b, b->data);
-        double im = numbers == 2 ? load_real(b, b->data + b->real) : 0.0;
-
-        RITZ_CHECK(put_value(build, row++, re, im));
-        b->data += numbers * b->real;
-    }
-    return RITZ_OK;
-}
-
-static ritz_status take_record_string(ritz_output4_reader *b,
-                                      const ritz_output4_build *build,
-                                      int64_t words, int64_t left,
-                                      ritz_output4_string *out)
-{
-    int64_t integers = count_integers(build);
-    int64_t n[2] = {0};
-
-    load_integers(b, b->data, integers < left ? integers : left, n);
-    RITZ_REFUSE_IF(!decode_string(build, n, left, out), RITZ_ERR_FORMAT,
-                   "byte %td: strings of %s do not add up to %" PRId64 " words",
-                   b->data - b->begin, build->where, words);
-    b->data += integers * b->integer;
-    return RITZ_OK;
-}
-
-/* NW may count words or numbers, but must fit the record. */
-static ritz_status read_record_dense(ritz_output4_reader *b,
-                                     ritz_output4_build *build,
-                                     const int64_t n[3])
-{
-    int64_t size = b->data_end - b->data;
-    int64_t words = size / b->integer;
-    int64_t reals = size / b->real;
-
-    RITZ_REFUSE_IF(n[1] < 0 || n[1] > build->header.nrow, RITZ_ERR_FORMAT,
-                   "%s begins at row %" PRId64 ", but the matrix has %" PRId64
-                   " rows",
-                   build->where, n[1], build->header.nrow);
-    RITZ_REFUSE_IF(size % (b->real * build->header.numbers) != 0,
-                   RITZ_ERR_FORMAT, "%s holds part of a value", build->where);
-    RITZ_REFUSE_IF(n[2] != words && n[2] != reals, RITZ_ERR_FORMAT,
-                   "%s is said to hold %" PRId64
-                   " words, but its record %" PRId64,
-                   build->where, n[2], words);
-    return read_record_numbers(b, build, n[1] - 1, reals);
-}
-
-/* Whether `LOOKED_AT` records in a row begin at `at`, whose lengths stand at
- * both ends and whose first numbers ascend, as those of columns do. */
-static bool looks_like_columns(const ritz_output4_reader *b, const char *at)
-{
-    enum { LOOKED_AT = 4 };
-    int64_t column = 0;
-
-    for (int k = 0; k < LOOKED_AT; k++) {
-        const int64_t left = b->text.end - at - 2 * b->mark;
-        int64_t size = 0, number = 0;
-
-        if (left < 3 * b->integer)
-            return false;
-        size = load_integer(b, at, b->mark);
-        if (size < 3 * b->integer || size > left ||
-            load_integer(b, at + b->mark + size, b->mark) != size)
-            return false;
-        number = load_integer(b, at + b->mark, b->integer);
-        if (number <= column)
-            return false;
-        column = number;
-        at += size + 2 * b->mark;
-    }
-    return true;
-}
-
-/* A record that begins at `from` or behind it: the first place that looks like
- * columns, or, if there is none nearby, found by passing from record to record
- * by their lengths. */
-static const char *find_record(const ritz_output4_reader *b, const char *from)
-{
-    enum { NEARBY = 1 << 16 };
-    ritz_output4_reader ahead = *b;
-    ritz_binary_record passed = {0};
-    const char *at = from + (b->text.at - from) % 4; /* as records are */
-
-    at = at < from ? at + 4 : at;
-    for (int64_t k = 0; k < NEARBY; k += 4)
-        if (b->text.end - at > k && looks_like_columns(b, at + k))
-            return at + k;
-    while (ahead.text.at < from)
-        if (take_record(&ahead, &passed) != RITZ_OK || passed.size < 0)
-            return NULL;
-    return ahead.text.at;
-}
-
-const ritz_output4_spelling ritz_output4_binary = {
-    .name = "binary",
-    .recognise = find_records,
-    .take_header = take_record_header,
-    .take_column = take_record_column,
-    .read_dense = read_record_dense,
-    .take_string = take_record_string,
-    .read_numbers = read_record_numbers,
-    .find_column = find_record,
 };

@@ -1,0 +1,299 @@
+/* NASTRAN OUTPUT4 as binary records. */
+#include "formats/bytes.h"
+#include "formats/output4_strings.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+/*
+ * Append @p count real values, little-endian doubles at @p at, from row @p row
+ * on, if all are finite and none is zero. There is room for them.
+ *
+ * @return false, and nothing is appended, if that is not so
+ */
+static bool put_doubles(ritz_output4_build *build, int64_t row, int64_t count,
+                        const char *at)
+{
+    ritz_triplets *to = &build->entries;
+    double *re = to->re + to->count;
+    bool usual = true;
+
+    memcpy(re, at, (size_t)count * sizeof *re);
+    for (int64_t k = 0; k < count; k++) {
+        const bool is = isfinite(re[k]) && re[k] != 0.0;
+
+        to->row[to->count + k] = row + k;
+        usual = usual && is;
+    }
+    if (!usual)
+        return false;
+    to->counts[build->column + 1] += count;
+    to->count += count;
+    return true;
+}
+
+/* ---- binary ------------------------------------------------------------- */
+
+/*
+ * Unformatted records of Fortran: length, bytes, length again.
+ *
+ *     NCOL NROW FORM TYPE NAME(2 words)    24 bytes, or 48 of 8-byte integers
+ *     ICOL IROW NW data                    IROW = 0: data are strings
+ *
+ * Data fill their record: where NW disagrees the record is right. Byte order
+ * and size of integers follow from the first length. Lengths are integers of 4
+ * bytes, of 8 by some compilers; records of no bytes may stand between others.
+ */
+
+typedef struct ritz_binary_record {
+    const char *at;
+    int64_t size;
+} ritz_binary_record;
+
+/** @p size bytes, 4 or 8, as an integer. */
+static inline int64_t load_integer(const ritz_output4_reader *b, const char *at,
+                                   int64_t size)
+{
+    uint64_t bits =
+        ritz_bytes_bits((const unsigned char *)at, size, b->big_endian);
+
+    return size == 4 ? (int64_t)(int32_t)(uint32_t)bits : (int64_t)bits;
+}
+
+/** @p count integers one after the other. */
+static void load_integers(const ritz_output4_reader *b, const char *at,
+                          int64_t count, int64_t *out)
+{
+    for (int64_t k = 0; k < count; k++)
+        out[k] = load_integer(b, at + k * b->integer, b->integer);
+}
+
+/* How the file is spelled, from the length of its first record. */
+static bool find_records(ritz_output4_reader *b)
+{
+    int64_t size = b->text.end - b->begin;
+
+    for (int k = 0; k < 8 && size >= 4; k++) {
+        b->big_endian = k & 1;
+        b->integer = k & 2 ? 8 : 4;
+        b->mark = k & 4 ? 4 : 8;
+        if (size >= b->mark &&
+            load_integer(b, b->begin, b->mark) == 6 * b->integer)
+            return true;
+    }
+    return false;
+}
+
+/* Take a record that is not empty; its size is -1 at the end of the file. */
+static ritz_status take_record(ritz_output4_reader *b, ritz_binary_record *out)
+{
+    int64_t size = 0;
+
+    while (size == 0) {
+        int64_t left = b->text.end - b->text.at;
+
+        *out = (ritz_binary_record){.size = -1};
+        if (left == 0)
+            return RITZ_OK;
+        RITZ_REFUSE_IF(left < 2 * b->mark, RITZ_ERR_FORMAT,
+                       "byte %td: %" PRId64 " bytes are left, too few for "
+                       "a record",
+                       b->text.at - b->begin, left);
+        size = load_integer(b, b->text.at, b->mark);
+        RITZ_REFUSE_IF(size < 0 || size > left - 2 * b->mark, RITZ_ERR_FORMAT,
+                       "byte %td: a record of %" PRId64
+                       " bytes begins, but %" PRId64 " are left",
+                       b->text.at - b->begin, size, left - b->mark);
+        *out = (ritz_binary_record){b->text.at + b->mark, size};
+        b->text.at += size + 2 * b->mark;
+        RITZ_REFUSE_IF(load_integer(b, b->text.at - b->mark, b->mark) != size,
+                       RITZ_ERR_FORMAT,
+                       "byte %td: a record of %" PRId64
+                       " bytes ends with another length",
+                       b->text.at - b->mark - b->begin, size);
+    }
+    return RITZ_OK;
+}
+
+static ritz_status take_record_header(ritz_output4_reader *b,
+                                      ritz_output4_header *out, bool *found)
+{
+    int64_t at = b->text.at - b->begin;
+    ritz_binary_record first = {0};
+    int64_t n[4] = {0};
+
+    RITZ_CHECK(take_record(b, &first));
+    *found = first.size >= 0;
+    if (!*found)
+        return RITZ_OK;
+    if (first.size == 6 * b->integer)
+        load_integers(b, first.at, 4, n);
+    RITZ_REFUSE_IF(!ritz_output4_set_header(n, first.at + 4 * b->integer,
+                                            2 * b->integer, out),
+                   RITZ_ERR_FORMAT,
+                   "byte %td: a record of %" PRId64 " bytes begins no matrix",
+                   first.at - b->begin, first.size);
+    out->at = at;
+    b->real = out->type % 2 == 1 && b->integer == 4 ? 4 : 8;
+    b->digits = b->real == 4 ? 7 : 17;
+    b->wide = b->real / b->integer;
+    b->widths = 1;
+    snprintf(b->format, sizeof b->format, "%s-endian, %d-byte integers",
+             b->big_endian ? "big" : "little", (int)b->integer);
+    return RITZ_OK;
+}
+
+static double load_real(const ritz_output4_reader *b, const char *at)
+{
+    const unsigned char *bytes = (const unsigned char *)at;
+
+    return b->real == 4 ? ritz_bytes_single(bytes, b->big_endian)
+                        : ritz_bytes_double(bytes, b->big_endian);
+}
+
+/* One record after the header. */
+static ritz_status take_record_column(ritz_output4_reader *b,
+                                      const ritz_output4_build *build,
+                                      int64_t n[3])
+{
+    ritz_binary_record column = {0};
+    bool whole = false;
+
+    RITZ_CHECK(take_record(b, &column));
+    RITZ_REFUSE_IF(column.size < 0, RITZ_ERR_FORMAT,
+                   "'%s' ends after column %" PRId64 " of %" PRId64,
+                   build->header.name, build->column + 1, build->header.ncol);
+    whole = column.size >= 3 * b->integer;
+    if (whole)
+        load_integers(b, column.at, 3, n);
+    RITZ_REFUSE_IF(
+        !whole || (n[0] <= build->header.ncol && column.size % b->integer != 0),
+        RITZ_ERR_FORMAT,
+        "byte %td: a record of %" PRId64 " bytes is no column of '%s'",
+        column.at - b->begin, column.size, build->header.name);
+    b->data = column.at + 3 * b->integer;
+    b->data_end = column.at + column.size;
+    if (n[1] == 0)
+        n[2] = (b->data_end - b->data) / b->integer;
+    return RITZ_OK;
+}
+
+static ritz_status read_record_numbers(ritz_output4_reader *b,
+                                       ritz_output4_build *build, int64_t row,
+                                       int64_t reals)
+{
+    int64_t numbers = build->header.numbers;
+
+    RITZ_CHECK(ritz_output4_begin_rows(build, row, reals / numbers));
+    if (__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__ && !b->big_endian &&
+        b->real == 8 && numbers == 1 && reals > 0 &&
+        put_doubles(build, row, reals, b->data)) {
+        b->data += reals * b->real;
+        return RITZ_OK;
+    }
+    for (int64_t k = 0; k < reals; k += numbers) {
+        double re = load_real(b, b->data);
+        double im = numbers == 2 ? load_real(b, b->data + b->real) : 0.0;
+
+        RITZ_CHECK(ritz_output4_put_value(build, row++, re, im));
+        b->data += numbers * b->real;
+    }
+    return RITZ_OK;
+}
+
+static ritz_status take_record_string(ritz_output4_reader *b,
+                                      const ritz_output4_build *build,
+                                      int64_t words, int64_t left,
+                                      ritz_output4_string *out)
+{
+    int64_t integers = ritz_output4_count_integers(build);
+    int64_t n[2] = {0};
+
+    load_integers(b, b->data, integers < left ? integers : left, n);
+    RITZ_REFUSE_IF(!ritz_output4_decode_string(build, n, left, out),
+                   RITZ_ERR_FORMAT,
+                   "byte %td: strings of %s do not add up to %" PRId64 " words",
+                   b->data - b->begin, build->where, words);
+    b->data += integers * b->integer;
+    return RITZ_OK;
+}
+
+/* NW may count words or numbers, but must fit the record. */
+static ritz_status read_record_dense(ritz_output4_reader *b,
+                                     ritz_output4_build *build,
+                                     const int64_t n[3])
+{
+    int64_t size = b->data_end - b->data;
+    int64_t words = size / b->integer;
+    int64_t reals = size / b->real;
+
+    RITZ_REFUSE_IF(n[1] < 0 || n[1] > build->header.nrow, RITZ_ERR_FORMAT,
+                   "%s begins at row %" PRId64 ", but the matrix has %" PRId64
+                   " rows",
+                   build->where, n[1], build->header.nrow);
+    RITZ_REFUSE_IF(size % (b->real * build->header.numbers) != 0,
+                   RITZ_ERR_FORMAT, "%s holds part of a value", build->where);
+    RITZ_REFUSE_IF(n[2] != words && n[2] != reals, RITZ_ERR_FORMAT,
+                   "%s is said to hold %" PRId64
+                   " words, but its record %" PRId64,
+                   build->where, n[2], words);
+    return read_record_numbers(b, build, n[1] - 1, reals);
+}
+
+/* Whether `LOOKED_AT` records in a row begin at `at`, whose lengths stand at
+ * both ends and whose first numbers ascend, as those of columns do. */
+static bool looks_like_columns(const ritz_output4_reader *b, const char *at)
+{
+    enum { LOOKED_AT = 4 };
+    int64_t column = 0;
+
+    for (int k = 0; k < LOOKED_AT; k++) {
+        const int64_t left = b->text.end - at - 2 * b->mark;
+        int64_t size = 0, number = 0;
+
+        if (left < 3 * b->integer)
+            return false;
+        size = load_integer(b, at, b->mark);
+        if (size < 3 * b->integer || size > left ||
+            load_integer(b, at + b->mark + size, b->mark) != size)
+            return false;
+        number = load_integer(b, at + b->mark, b->integer);
+        if (number <= column)
+            return false;
+        column = number;
+        at += size + 2 * b->mark;
+    }
+    return true;
+}
+
+/* A record that begins at `from` or behind it: the first place that looks like
+ * columns, or, if there is none nearby, found by passing from record to record
+ * by their lengths. */
+static const char *find_record(const ritz_output4_reader *b, const char *from)
+{
+    enum { NEARBY = 1 << 16 };
+    ritz_output4_reader ahead = *b;
+    ritz_binary_record passed = {0};
+    const char *at = from + (b->text.at - from) % 4; /* as records are */
+
+    at = at < from ? at + 4 : at;
+    for (int64_t k = 0; k < NEARBY; k += 4)
+        if (b->text.end - at > k && looks_like_columns(b, at + k))
+            return at + k;
+    while (ahead.text.at < from)
+        if (take_record(&ahead, &passed) != RITZ_OK || passed.size < 0)
+            return NULL;
+    return ahead.text.at;
+}
+
+const ritz_output4_spelling ritz_output4_binary = {
+    .name = "binary",
+    .recognise = find_records,
+    .take_header = take_record_header,
+    .take_column = take_record_column,
+    .read_dense = read_record_dense,
+    .take_string = take_record_string,
+    .read_numbers = read_record_numbers,
+    .find_column = find_record,
+};
