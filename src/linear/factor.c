@@ -27,8 +27,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Sweeps of inverse iteration: one finds a lone small eigenvalue. */
-enum { SWEEPS = 3 };
+enum {
+    SWEEPS = 3, /* of inverse iteration: one finds a lone small eigenvalue */
+    LARGE = 128 << 20, /* bytes of L from which its packing has freed memory
+                          returned first */
+};
 
 struct ritz_factor {
     int64_t n;
