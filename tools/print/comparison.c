@@ -639,12 +639,45 @@ static ritz_status keep_done(cli_run *run, const ritz_scene *scene,
                      done, all, run->output);
 }
 
+/* Write the result, and say it. */
+static ritz_status report_result(cli_run *run, const comparison_options *given,
+                                 const ritz_stage *stage,
+                                 const ritz_comparison *c)
+{
+    RITZ_CHECK(
+        model_write_bodies(run, given->prefix, stage->scene, c->second.body));
+    RITZ_CHECK(ritz_container_write_system(run->output, &c->second_system,
+                                           cli_stamp(run)));
+    RITZ_CHECK(say_comparison(run, stage, c));
+    return tracks_report(run, stage, &c->first_system, given->tracks);
+}
+
+/* Try the tolerances that are given, and write their table and the report. */
+static ritz_status report_tolerances(cli_run *run,
+                                     const comparison_options *given,
+                                     ritz_stage *stage,
+                                     const ritz_comparison *c)
+{
+    RITZ_OWN(tolerance_rows) rows = {.count = given->num_tolerances};
+
+    if (rows.count > 0) {
+        RITZ_CHECK_IN("tolerances",
+                      ritz_compare_tolerances(stage, c, rows.count,
+                                              given->tolerance, &rows.at));
+        tolerances_say(run, stage, &rows);
+    }
+    if (given->tolerance_table)
+        RITZ_CHECK(tolerances_write(given->tolerance_table, stage, &rows));
+    return given->report ? cli_table_save(&run->said, given->report) : RITZ_OK;
+}
+
+/* A signal that comes while a complete result is written lets it be written to
+   its end; then tolerances, if any are to follow, are not tried. */
 ritz_status comparison_run(cli_run *run, const comparison_options *given)
 {
     RITZ_OWN(ritz_scene) scene = {0};
     RITZ_OWN(ritz_stage) stage = {0};
     RITZ_OWN(ritz_comparison) c = {0};
-    RITZ_OWN(tolerance_rows) rows = {0};
     const ritz_stop stop = {.asked = cli_stop};
 
     RITZ_CHECK(model_scene(run, run->operand[0], &scene));
@@ -656,23 +689,10 @@ ritz_status comparison_run(cli_run *run, const comparison_options *given)
     RITZ_CHECK(model_foresee(run, &stage));
     cli_interruptible();
     RITZ_CHECK(ritz_compare_until(&stage, &stop, &c));
-    if (cli_uninterruptible())
+    if (cli_interrupted())
         return keep_done(run, &scene, &c);
-    RITZ_CHECK(model_write_bodies(run, given->prefix, &scene, c.second.body));
-    RITZ_CHECK(ritz_container_write_system(run->output, &c.second_system,
-                                           cli_stamp(run)));
-    RITZ_CHECK(say_comparison(run, &stage, &c));
-    RITZ_CHECK(tracks_report(run, &stage, &c.first_system, given->tracks));
-    if (given->num_tolerances > 0) {
-        rows.count = given->num_tolerances;
-        RITZ_CHECK_IN("tolerances",
-                      ritz_compare_tolerances(&stage, &c, rows.count,
-                                              given->tolerance, &rows.at));
-        tolerances_say(run, &stage, &rows);
-    }
-    if (given->tolerance_table)
-        RITZ_CHECK(tolerances_write(given->tolerance_table, &stage, &rows));
-    if (given->report)
-        RITZ_CHECK(cli_table_save(&run->said, given->report));
-    return RITZ_OK;
+    RITZ_CHECK(report_result(run, given, &stage, &c));
+    if (cli_uninterruptible() && given->num_tolerances > 0)
+        return keep_done(run, &scene, &c);
+    return report_tolerances(run, given, &stage, &c);
 }
