@@ -24,7 +24,8 @@ static const char *file;
 
 /* --- options that this engine does not have ------------------------------- */
 
-static ritz_status refuse_options(const basis_options *given)
+static ritz_status refuse_options(const cli_run *run,
+                                  const basis_options *given)
 {
     const ritz_choice *choice = &given->request.choice;
     const struct {
@@ -35,7 +36,7 @@ static ritz_status refuse_options(const basis_options *given)
         {"--at", given->model.at != NULL},
         {"--order", given->model.order > 0},
         {"--interface-modes", choice->interface_modes > 0},
-        {"--memory", given->memory != NULL},
+        {"--memory", run->memory != NULL},
     };
 
     for (size_t k = 0; k < sizeof others / sizeof *others; k++)
@@ -118,7 +119,7 @@ static ritz_status run_in_ranks(cli_run *run, basis_options *given)
 {
     ritz_method method;
 
-    RITZ_CHECK(refuse_options(given));
+    RITZ_CHECK(refuse_options(run, given));
     RITZ_CHECK(choose_method(given->method, &method));
     given->method = &method;
     given->read = read_frame;

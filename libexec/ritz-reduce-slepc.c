@@ -48,7 +48,8 @@ static ritz_status project(const ritz_component *component,
 
 /* Refuse estimates, and options that change matrices or damping: rank 0 has no
    matrices of the component. */
-static ritz_status refuse_options(const reduce_options *given)
+static ritz_status refuse_options(const cli_run *run,
+                                  const reduce_options *given)
 {
     const struct {
         const char *option;
@@ -58,7 +59,7 @@ static ritz_status refuse_options(const reduce_options *given)
         {"--order", given->model.order > 0},
         {"--damping", given->model.damping != NULL},
         {"--band-hz", given->estimate.band_hz[1] > 0.0},
-        {"--memory", given->memory != NULL},
+        {"--memory", run->memory != NULL},
     };
 
     for (size_t k = 0; k < sizeof others / sizeof *others; k++)
@@ -72,7 +73,7 @@ static ritz_status refuse_options(const reduce_options *given)
 
 static ritz_status run_in_ranks(cli_run *run, reduce_options *given)
 {
-    RITZ_CHECK(refuse_options(given));
+    RITZ_CHECK(refuse_options(run, given));
     given->read = read_frame;
     given->project = project;
     return reduce_run(run, given);

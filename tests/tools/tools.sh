@@ -153,6 +153,9 @@ expect 0 '2 constraint' ritz-basis guyan --memory 1.5GiB bar.h5 -o limited.h5
 expect 1 'are allowed (--memory)' ritz-basis guyan --memory 1K bar.h5 -o not.h5
 expect 2 "'22X' is no size such as 500M or 22G" ritz-basis guyan --memory 22X \
     bar.h5 -o not.h5
+for tool in assemble check compare fit frf poles rank reduce simulate verify; do
+    expect 2 "'22X' is no size" "ritz-$tool" --memory 22X bar.h5 bar.h5 -o not.h5
+done
 expect 0 '1 constraint' ritz-basis guyan --attach left bar.h5 -o one.h5
 expect 2 "no method 'guyam', is 'guyan' meant?" ritz-basis guyam bar.h5 -o x.h5
 expect 0 '7 columns for 21 dofs' ritz-basis craig-bampton --modes 5 --count no \

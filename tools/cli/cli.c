@@ -11,12 +11,16 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { MAX_OPTIONS = 40, EXIT_USAGE = 2, WORD = 32 };
+enum { MAX_OPTIONS = 48, EXIT_USAGE = 2, WORD = 32 };
 
-/* The tool's own options, then those that every tool has; ended by {0}. */
+/* The tool's own options, then those that every tool has; ended by {0}. The
+   first of these belongs to tools that compute with large models. */
 static void gather_options(cli_run *run, cli_option *all)
 {
     const cli_option common[] = {
+        CLI_TEXT("memory", &run->memory, "SIZE",
+                 "refuse what needs more memory, before it is allocated: "
+                 "500M, 22G [80 % of the machine's]"),
         {.kind = CLI_KIND_TEXT,
          .letter = 'o',
          .written = true,
@@ -36,14 +40,16 @@ static void gather_options(cli_run *run, cli_option *all)
                 "print this help"),
         {0},
     };
+    const int first = run->program->threads ? 0 : 1;
+    const int last = (int)(sizeof common / sizeof *common);
     int count = 0;
 
     while (run->options[count].kind != CLI_KIND_END)
         count++;
-    if (count + (int)(sizeof common / sizeof *common) > MAX_OPTIONS)
+    if (count + last - first > MAX_OPTIONS)
         abort();
     memcpy(all, run->options, (size_t)count * sizeof *all);
-    memcpy(all + count, common, sizeof common);
+    memcpy(all + count, common + first, (size_t)(last - first) * sizeof *all);
 }
 
 static void print_range(const cli_option *o, double value)
@@ -477,6 +483,7 @@ void cli_parse(const cli_program *program, const cli_option *options, int argc,
     keep_command(run, argc, argv);
     gather_options(run, all);
     take_all(run, all, argc, argv);
+    cli_limit_memory(program, run->memory);
     check_operands(run);
     if (run->output ? !*run->output : !program->output_optional)
         cli_refuse(program, "no output, name it with -o");

@@ -144,6 +144,7 @@ typedef struct cli_run {
     char **operand;
     char **argv;
     const char *output, *record;
+    const char *memory; /* --memory; NULL: not given */
     /* number of outputs that options name, these two included */
     int num_written;
     const char *written[CLI_MAX_OUTPUTS];

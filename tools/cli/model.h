@@ -72,11 +72,6 @@ typedef struct model_options {
     CLI_INT("order", place, "N", 1, 1e6,                                       \
             "the first N columns of a nested reduced component [all]")
 
-#define MEMORY_OPTION(place)                                                   \
-    CLI_TEXT("memory", place, "SIZE",                                          \
-             "refuse what needs more memory, before it is allocated: 500M, "   \
-             "22G [80 % of the machine's]")
-
 #define DAMPING_OPTION(place)                                                  \
     CLI_TEXT("damping", place, "TEXT",                                         \
              "\"modal ZETA\", \"modes ZETA ...\", \"bands F F ZETA ...\" "     \

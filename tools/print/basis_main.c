@@ -24,7 +24,7 @@ static void list_methods(void)
 int basis_main(int argc, char **argv,
                ritz_status (*make)(cli_run *run, basis_options *given))
 {
-    enum { NUM_OWN = 9 };
+    enum { NUM_OWN = 8 };
     choice_words choice = {0};
     basis_options given = {.request = RITZ_REQUEST_NONE};
     ritz_request *request = &given.request;
@@ -42,7 +42,6 @@ int basis_main(int argc, char **argv,
                  "load a port with another component, joined at its PORT"),
         AT_OPTION(&given.model.at),
         ORDER_OPTION(&given.model.order),
-        MEMORY_OPTION(&given.memory),
         CLI_ACTION("list", list_methods, "list methods and their papers"),
     };
     const cli_program program = {
@@ -66,7 +65,6 @@ int basis_main(int argc, char **argv,
 
     words_add(&choice, 0, options + NUM_OWN);
     cli_parse(&program, options, argc, argv, &run);
-    cli_limit_memory(&program, given.memory);
     given.method = cli_choose(&program, "method", run.operand[0], ritz_methods);
     if (given.ports && !(given.method->uses & RITZ_USES_ATTACHED))
         cli_refuse(&program,

@@ -30,7 +30,6 @@ typedef struct basis_options {
     cli_list neighbours;  /* "PORT=FILE:PORT" */
     ritz_request request; /* the component is taken from the operand */
     model_options model;  /* configuration or columns of the operand */
-    const char *memory;   /* --memory; NULL: not given */
 } basis_options;
 
 ritz_status basis_run(cli_run *run, basis_options *given);
@@ -51,7 +50,6 @@ typedef struct reduce_options {
     /* "auto" or "slepc"; only shown by --help: libexec_is_asked() reads it
        before options are parsed */
     const char *engine;
-    const char *memory; /* --memory; NULL: not given */
     ritz_estimate_request estimate;
     /* functions that read the component and project it on the basis; NULL:
        those of one process */

@@ -19,7 +19,6 @@ int reduce_main(int argc, char **argv,
         CLI_WORD("engine", &given.engine, "auto|slepc",
                  "what projects: this process, or those of mpirun (see "
                  "docs/parallel.md) [auto]"),
-        MEMORY_OPTION(&given.memory),
         CLI_FLAG("without-basis", &given.without_basis,
                  "leave out T and the full mesh, for a smaller file"),
         {0},
@@ -41,6 +40,5 @@ int reduce_main(int argc, char **argv,
     cli_run run;
 
     cli_parse(&program, options, argc, argv, &run);
-    cli_limit_memory(&program, given.memory);
     return cli_finish(&run, make(&run, &given));
 }

@@ -228,9 +228,9 @@ static ritz_status copy_and_restore(const ritz_sparse *A, const int64_t *order,
 static ritz_status copy_and_restore_once(const ritz_sparse *A,
                                          const int64_t *order)
 {
-    RITZ_OWN(ritz_sparse) B = {0};
+    RITZ_OWN(ritz_sparse) back = {0};
 
-    return copy_and_restore(A, order, &B);
+    return copy_and_restore(A, order, &back);
 }
 
 /* Rows of A have different lengths, and one is empty. */
@@ -240,14 +240,14 @@ static void a_matrix_is_restored_from_its_rows(void **state)
     int64_t col[] = {0, 0, 0, 1, 1, 1, 3, 3, 4, 4};
     double val[] = {2.0, -1.0, 0.1, -1.0, 3.0, 0.3, 0.1, 5.0, 0.3, 7.0};
     const int64_t order[] = {4, 2, 0, 3, 1};
-    RITZ_OWN(ritz_sparse) A = {0}, B = {0};
+    RITZ_OWN(ritz_sparse) A = {0}, back = {0};
 
     (void)state;
     assert_ok(ritz_sparse_from_triplets(5, 5, 10, row, col, val, &A));
-    assert_ok(copy_and_restore(&A, order, &B));
-    assert_memory_equal(B.colptr, A.colptr, 6 * sizeof *A.colptr);
-    assert_memory_equal(B.rowind, A.rowind, 10 * sizeof *A.rowind);
-    assert_memory_equal(B.val, A.val, 10 * sizeof *A.val);
+    assert_ok(copy_and_restore(&A, order, &back));
+    assert_memory_equal(back.colptr, A.colptr, 6 * sizeof *A.colptr);
+    assert_memory_equal(back.rowind, A.rowind, 10 * sizeof *A.rowind);
+    assert_memory_equal(back.val, A.val, 10 * sizeof *A.val);
     assert_survives_every_allocation(copy_and_restore_once(&A, order));
 }
 
