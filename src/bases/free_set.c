@@ -223,6 +223,7 @@ static ritz_status sweep_residual(const residual_task *t,
     RITZ_CHECK(find_responses(t, modes, &share, A, &Psi, least));
     RITZ_CHECK(ritz_sparse_mul(M, Phi, &MPhi));
     RITZ_CHECK(relieve_loads(F, &MPhi, &share, &G));
+    RITZ_CHECK(ritz_dense_take_out(&MPhi, Phi, &G)); /* of the rounding */
     RITZ_CHECK(ritz_dense_take_out(Phi, &MPhi, &Psi));
     for (int k = 0; k < MOST_SWEEPS; k++) {
         RITZ_OWN(ritz_dense) X = {0};

@@ -464,6 +464,21 @@ ritz_status ritz_h5_get_text(hid_t at, const char *name, size_t size, char *out)
     return ritz_h5_get(at, name, type, 1, out);
 }
 
+hsize_t ritz_h5_volume(const ritz_h5_shape *shape, hsize_t most)
+{
+    hsize_t count = 1;
+
+    for (int k = 0; k < shape->rank; k++)
+        if (shape->dims[k] == 0)
+            return 0;
+    for (int k = 0; k < shape->rank; k++) {
+        if (shape->dims[k] > most / count)
+            return most + 1;
+        count *= shape->dims[k];
+    }
+    return count;
+}
+
 /* --- checksums, as the head of h5_sets.c defines them --------------------- */
 
 uint64_t ritz_h5_sum(int64_t bytes, const void *values, uint64_t sum)

@@ -77,21 +77,6 @@ static ritz_h5_shape cut_chunks(const ritz_h5_shape *shape, hsize_t most)
     return chunk;
 }
 
-hsize_t ritz_h5_volume(const ritz_h5_shape *shape, hsize_t most)
-{
-    hsize_t count = 1;
-
-    for (int k = 0; k < shape->rank; k++)
-        if (shape->dims[k] == 0)
-            return 0;
-    for (int k = 0; k < shape->rank; k++) {
-        if (shape->dims[k] > most / count)
-            return most + 1;
-        count *= shape->dims[k];
-    }
-    return count;
-}
-
 static ritz_status create_set(hid_t at, const char *name, hid_t type,
                               ritz_h5_shape shape, hid_t *out)
 {

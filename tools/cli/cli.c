@@ -483,7 +483,9 @@ void cli_parse(const cli_program *program, const cli_option *options, int argc,
     keep_command(run, argc, argv);
     gather_options(run, all);
     take_all(run, all, argc, argv);
-    cli_limit_memory(program, run->memory);
+    if (run->memory && !cli_limit_memory(run->memory))
+        cli_refuse(program, "--memory: '%s' is no size such as 500M or 22G",
+                   run->memory);
     check_operands(run);
     if (run->output ? !*run->output : !program->output_optional)
         cli_refuse(program, "no output, name it with -o");

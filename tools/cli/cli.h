@@ -204,11 +204,12 @@ bool cli_next(const char **list, char word[RITZ_NAME_SIZE]);
 
 /**
  * Set the limit of --memory: a number, and K, M, G or T of powers of 1024, with
- * or without "iB" or "B". Another text is a usage error.
+ * or without "iB" or "B".
  *
- * @param[in] text  NULL: the limit stays as it is
+ * @return false if the text is no such size; then there is no limit but the
+ *         usual one
  */
-void cli_limit_memory(const cli_program *program, const char *text);
+bool cli_limit_memory(const char *text);
 
 /**
  * Register a file before it is read: its SHA-256 is stored in what the tool

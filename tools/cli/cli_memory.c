@@ -28,15 +28,10 @@ static int64_t read_size(const char *text)
     return size >= 1.0 && size < most ? (int64_t)size : 0;
 }
 
-void cli_limit_memory(const cli_program *program, const char *text)
+bool cli_limit_memory(const char *text)
 {
-    int64_t bytes = 0;
+    const int64_t bytes = read_size(text);
 
-    if (!text)
-        return;
-    bytes = read_size(text);
-    if (bytes == 0)
-        cli_refuse(program, "--memory: '%s' is no size such as 500M or 22G",
-                   text);
     ritz_set_memory(bytes);
+    return bytes > 0;
 }
