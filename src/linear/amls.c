@@ -102,14 +102,6 @@ static void amls_free(amls *a)
 
 /* --- the tree ------------------------------------------------------------- */
 
-static int compare_rows(const void *a, const void *b)
-{
-    const int64_t x = *(const int64_t *)a;
-    const int64_t y = *(const int64_t *)b;
-
-    return x < y ? -1 : x > y;
-}
-
 /* Append to the list of front s those positions in `from` that lie beyond it
    and are not in the list yet. */
 static void gather_positions(const amls *a, int64_t s, int64_t count,
@@ -149,7 +141,7 @@ static ritz_status find_boundary(const amls *a, int64_t s, int64_t *met,
     for (int64_t c = a->tree.begin[s]; c < s; c++)
         if (a->tree.parent[c] == s)
             gather_positions(a, s, a->front[c].b, a->front[c].row, met, list);
-    qsort(list, (size_t)f->b, sizeof *list, compare_rows);
+    qsort(list, (size_t)f->b, sizeof *list, ritz_ascending_index);
     RITZ_CHECK_COPY(f->row, list, f->b);
     return RITZ_OK;
 }
