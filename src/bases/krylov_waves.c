@@ -118,7 +118,7 @@ static ritz_status solve_complex(const ritz_wave_point *p, bool transposed,
 }
 
 /* X := P' S P X: elastic response with a determinate support, see ritz_elastic
-   in krylov.c. */
+   in elastic.c. */
 static ritz_status solve_relieved(const ritz_wave_point *p, ritz_dense *X)
 {
     const ritz_elastic *E = p->body;
