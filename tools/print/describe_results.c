@@ -1,0 +1,73 @@
+/* What a frequency response and a time response hold. */
+#include "print/print.h"
+
+ritz_status describe_response(cli_run *run, const ritz_response *r)
+{
+    sink_field(run, "kind", "points,from_hz,to_hz",
+               "frequency response, %ld points, %g to %g Hz", r->count,
+               r->count > 0 ? r->hertz[0] : (double)NAN,
+               r->count > 0 ? r->hertz[r->count - 1] : (double)NAN);
+    sink_set(run, "damping", "%s", r->damping);
+    sink_field(run, "method", "method", "%s, damping %s", r->method,
+               *r->damping ? r->damping : "of the matrices");
+    sink_names(run, "inputs", "inputs", r->num_inputs, r->input);
+    sink_names(run, "outputs", "outputs", r->num_outputs, r->output);
+    return RITZ_OK;
+}
+
+/* Largest |value| of an output, and when. */
+static double find_peak(const ritz_simulation *s, int64_t i, double *when)
+{
+    double most = 0.0;
+
+    *when = s->count > 0 ? s->seconds[0] : 0.0;
+    for (int64_t k = 0; k < s->count; k++) {
+        double y = fabs(s->y[k * s->num_outputs + i]);
+
+        if (y > most) {
+            most = y;
+            *when = s->seconds[k];
+        }
+    }
+    return most;
+}
+
+/* Largest error of the energy balance over the largest energy. */
+static double find_imbalance(const ritz_simulation *s)
+{
+    double off = 0.0, size = 0.0;
+
+    for (int64_t k = 0; k < s->count; k++) {
+        off = fmax(off, fabs(s->balance[k]));
+        size = fmax(size, fabs(s->kinetic[k]) + fabs(s->potential[k]) +
+                              fabs(s->dissipated[k]));
+    }
+    return size > 0.0 ? off / size : 0.0;
+}
+
+ritz_status describe_simulation(cli_run *run, const ritz_simulation *s)
+{
+    double end = s->count > 0 ? s->seconds[s->count - 1] : 0.0;
+
+    sink_set(run, "order,damping", "%ld %s", s->order, s->damping);
+    sink_field(run, "kind", "points,seconds",
+               "time response, %ld times to %g s", s->count, end);
+    sink_field(run, "method", "method,step,hold",
+               "%s, step %g s, inputs held to order %s, damping %s",
+               s->integrator, s->step, s->hold,
+               *s->damping ? s->damping : "of the matrices");
+    sink_names(run, "inputs", "inputs", s->num_inputs, s->input);
+    sink_names(run, NULL, "outputs", s->num_outputs, s->output);
+    SINK_EACH(run, "peaks", i, s->num_outputs) {
+        double when = 0.0;
+        double most = find_peak(s, i, &when);
+
+        cli_say(run, "  %-14s %-20s at most %.6e at %g s",
+                i > 0 ? "" : "outputs", s->output[i], most, when);
+        sink_add(run, "%g", most);
+    }
+    if (s->balance)
+        sink_field(run, "energies", "imbalance",
+                   "balance to %.1e of the largest", find_imbalance(s));
+    return RITZ_OK;
+}
