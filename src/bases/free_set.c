@@ -201,9 +201,9 @@ static ritz_status relieve_loads(const ritz_dense *F, const ritz_dense *MPhi,
  * the first ones do not count if the rate is not known.
  *
  * @param[in]  rate    as of choose_shift
- * @param[out] change  largest relative change of a column in the last sweep,
- *                     without its part in the modes: of modes that are
- *                     approximate such a part comes back in each sweep
+ * @param[out] change  largest relative change of a column that a further sweep
+ *                     would make, without its part in the modes: of modes that
+ *                     are approximate such a part comes back in each sweep
  */
 static ritz_status sweep_residual(const residual_task *t,
                                   const ritz_pairs *modes, ritz_factor *A,
@@ -223,7 +223,6 @@ static ritz_status sweep_residual(const residual_task *t,
     RITZ_CHECK(find_responses(t, modes, &share, A, &Psi, least));
     RITZ_CHECK(ritz_sparse_mul(M, Phi, &MPhi));
     RITZ_CHECK(relieve_loads(F, &MPhi, &share, &G));
-    RITZ_CHECK(ritz_dense_take_out(&MPhi, Phi, &G)); /* of the rounding */
     RITZ_CHECK(ritz_dense_take_out(Phi, &MPhi, &Psi));
     for (int k = 0; k < MOST_SWEEPS; k++) {
         RITZ_OWN(ritz_dense) X = {0};
@@ -232,7 +231,11 @@ static ritz_status sweep_residual(const residual_task *t,
         RITZ_CHECK(ritz_dense_take_out(Phi, &MPhi, &X));
         *change = measure_change(&Psi, &X, least);
         ritz_dense_replace(&Psi, &X);
-        if (left * *change <= settled || (k > slow && *change > 0.5 * best))
+        if (left * *change <= settled) {
+            *change *= left;
+            break;
+        }
+        if (k > slow && *change > 0.5 * best)
             break;
         best = fmin(best, *change);
     }
