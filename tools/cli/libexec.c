@@ -5,7 +5,6 @@
 #include "cli/cores.h"
 
 #include <errno.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -142,23 +141,11 @@ static bool stay_on_machine(void)
     return setenv("OMPI_MCA_pml", "ob1", 0) == 0;
 }
 
-/*
- * Ctrl-C reaches mpirun and every rank. A rank that ends by it leaves files of
- * Open MPI in memory behind; mpirun ends all ranks in order, so that they leave
- * the signal to it.
- */
-static void leave_interrupt(void)
-{
-    if (find_number(ranks) >= 0)
-        (void)signal(SIGINT, SIG_IGN);
-}
-
 int libexec_become(const char *program, char **argv, const char *tool,
                    const char *option, const char *packages)
 {
     char path[PATH_MAX];
 
-    leave_interrupt();
     if (libexec_find(program, path) == RITZ_OK && set_threads() &&
         stay_on_machine())
         execv(path, argv);
