@@ -188,9 +188,9 @@ typedef struct ritz_columns {
     int64_t *dof;     /* row of the full component it attaches; -1 where none */
     double *hertz;    /* NaN where none */
     double *residual; /* relative, of the eigenpair; NaN where none */
-    double *error;    /* bound of the relative error of the eigenvalue, of engines
-                         that find it approximately; NaN where none. NULL: none
-                         at all */
+    /* bound of the relative error of the eigenvalue, of engines that find it
+       approximately; NaN where none. NULL: none at all */
+    double *error;
 } ritz_columns;
 
 /* How it was made. */

@@ -58,7 +58,7 @@ uint32_t ritz_h5_fletcher32(int64_t bytes, const void *values)
     uint64_t sum[2] = {0, 0};
     bool zero = true;
 
-    for (int64_t from = 0; from < bytes; from += ROWS * WORD) {
+    for (int64_t from = 0; from < bytes; from += (int64_t)ROWS * WORD) {
         const int64_t left = (bytes - from) / WORD;
         const int64_t rows = left < ROWS ? left : ROWS;
         uint64_t s[2];

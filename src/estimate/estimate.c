@@ -570,15 +570,17 @@ static ritz_status open_trial(const ritz_basis *basis,
 {
     ritz_estimator *estimator = m->estimator;
     int64_t count = count_trial(m, response), below = 0;
-    double rho = nan("");
 
     if (!estimator->A)
         estimator->sigma =
             -RITZ_ESTIMATE_SHIFT * ritz_eigen_lambda(m->band_hz[1]);
     for (;;) {
+        double rho = nan(""); /* where modes are counted first */
+
         RITZ_CHECK(ritz_lehmann_new(estimator, &basis->T, reduced, &m->pairs,
                                     count, &m->trial));
-        rho = counts ? propose_behind(m, m->last) : nan("");
+        if (counts)
+            rho = propose_behind(m, m->last);
         if (is_known(m, rho, &below))
             rho = nan("");
         RITZ_CHECK(ritz_estimator_factor(estimator, rho));

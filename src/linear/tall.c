@@ -299,7 +299,7 @@ ritz_status ritz_tall_weigh_sizes(const ritz_sparse *W, const ritz_dense *V,
         return RITZ_OK;
     }
     RITZ_CHECK_RAW(x, X->nrow * WIDEST);
-    RITZ_CHECK_RAW(sums, threads * WIDEST);
+    RITZ_CHECK_RAW(sums, (int64_t)threads * WIDEST);
     t.x = x;
     t.sums = sums;
     while (next_columns(&t)) {
@@ -308,7 +308,7 @@ ritz_status ritz_tall_weigh_sizes(const ritz_sparse *W, const ritz_dense *V,
         for (int64_t c = 0; c < t.count; c++) {
             size[t.k + c] = 0.0;
             for (int i = 0; i < threads; i++)
-                size[t.k + c] += sums[i * WIDEST + c];
+                size[t.k + c] += sums[(int64_t)i * WIDEST + c];
         }
     }
     return RITZ_OK;

@@ -24,7 +24,9 @@ static ritz_status write_vector(const char *path, int64_t count,
 {
     const ritz_h5_shape shape = ritz_h5_vector(count);
     const hsize_t chunk = (hsize_t)(count < CHUNK ? count : CHUNK);
-    RITZ_OWN(hid_t) file = 0, space = 0, plan = 0, set = 0;
+    RITZ_OWN(hid_t) file = 0, space = 0, plan = 0;
+    ritz_status status = RITZ_OK;
+    hid_t set = 0;
 
     RITZ_CHECK(ritz_h5_create(path, &file));
     space = H5Screate_simple(1, shape.dims, NULL);
@@ -39,10 +41,10 @@ static ritz_status write_vector(const char *path, int64_t count,
         assert_true(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL,
                              H5P_DEFAULT, values) >= 0);
     else
-        RITZ_CHECK(
-            ritz_h5_write_values(set, "x", H5T_NATIVE_DOUBLE, &shape, values));
+        status =
+            ritz_h5_write_values(set, "x", H5T_NATIVE_DOUBLE, &shape, values);
     ritz_h5_close(set);
-    set = 0;
+    RITZ_CHECK(status);
     return ritz_h5_finish(&file);
 }
 
