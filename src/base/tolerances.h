@@ -386,10 +386,12 @@
    does not bend, over (k / n)^(2/3) of k modes and n dofs: see first_shift.c.
    Of free solids of 11k and 55k dofs the 50th eigenvalue was 3e4 and 8e4 times
    the shift, of a plate of 43k dofs 1e3 times; frequencies were the same to
-   1e-14 with a shift twenty times larger. A least part of 3e-7 left errors of
-   1.2e-10 in responses of a free bar of 700 elements. */
+   1e-14 with a shift twenty times larger. Bodies of fewer dofs than the last
+   number have the first shift: a smaller one left errors of 2e-10 in responses
+   of a free bar of 700 elements, 1e-10 being tested. */
 #define RITZ_FIRST_BENDING 0.5
 #define RITZ_FIRST_LEAST   3e-6
+#define RITZ_FIRST_FROM    5000
 /* A shift this many times the first flexible eigenvalue blurs it: another is
    taken. */
 #define RITZ_SHIFT_BLURRED 1e3

@@ -11,6 +11,9 @@
  * A long body need not bend. Its k-th of n eigenvalues is at most about
  * (k / n)^(2/3) of the highest, that of a compact solid, and the shift is not
  * smaller than a part RITZ_FIRST_LEAST of this.
+ *
+ * A larger shift keeps more digits of the factor, and costs blocks of Lanczos or
+ * another factor: bodies for which these cost nothing have the largest one.
  */
 #include "linear/first_shift.h"
 
@@ -93,8 +96,10 @@ ritz_status ritz_first_shift(const ritz_sparse *K, double typical,
     double bending = 1.0;
     int64_t length = 1;
 
-    if (K->nrow > 0)
-        RITZ_CHECK(find_length(K, &length));
+    *out = typical * RITZ_FIRST_SHIFT;
+    if (K->nrow < RITZ_FIRST_FROM)
+        return RITZ_OK;
+    RITZ_CHECK(find_length(K, &length));
     bending = RITZ_FIRST_BENDING * pow((double)length, -4.0);
     *out =
         typical * fmin(RITZ_FIRST_SHIFT,
