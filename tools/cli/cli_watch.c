@@ -340,12 +340,15 @@ static void *allocate_json(size_t size)
  * system clears them again. It raises the size from which it does so with each
  * block that is freed, up to 32 MiB, and keeps twice as much freed memory at the
  * end of the heap. Begin with these values: otherwise a small model has its
- * matrices cleared page by page again and again.
+ * matrices cleared page by page again and again. Values that the environment
+ * states, as cli_run.c does for large models, are kept.
  */
 static void keep_freed_memory(void)
 {
     enum { LARGEST = 32 << 20 };
 
+    if (getenv("GLIBC_TUNABLES"))
+        return;
     (void)mallopt(M_MMAP_THRESHOLD, LARGEST);
     (void)mallopt(M_TRIM_THRESHOLD, 2 * LARGEST);
 }
