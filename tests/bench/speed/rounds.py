@@ -28,6 +28,7 @@ class Timing:
         try:
             done = self.shop.run(job, model)
         except Failed as reason:
+            say(self.shop, model, f"{job}: {reason}")
             self.runs[model][job] = {"why": str(reason)}
             self.samples.pop((model, job), None)
         else:

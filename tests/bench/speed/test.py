@@ -26,6 +26,7 @@ import page
 import quality
 import targets
 from stopwatch import Failed, Stopwatch
+from workshop import Workshop
 
 HERE = pathlib.Path(__file__).resolve().parent
 COUNTS, LENGTHS = (7, 6, 2), (0.7, 0.9, 0.1)
@@ -266,6 +267,29 @@ def check_stopwatch():
         stopwatch.close()
 
 
+def check_records():
+    """A run that fails leaves its record, which a further run would append to."""
+    def run_tool(command, environment, folder, limit):
+        with open(command[-1], "a") as record:
+            print('{"phases": {"reading": 1.5}}', file=record)
+        if "fails" in command:
+            raise Failed("status 1: why")
+        return {}
+
+    with tempfile.TemporaryDirectory() as folder:
+        shop = Workshop.__new__(Workshop)
+        shop.folder = shop.bin = pathlib.Path(folder)
+        shop.limit, shop.stopwatch, shop.programs = 9.0, run_tool, {}
+        shop.jobs = {word: {"command": f"ritz-basis {word}"}
+                     for word in ("fails", "works")}
+        try:
+            shop.run("fails", "S10")
+        except Failed:
+            pass
+        phases = shop.run("works", "S10")["said"]["phases"]
+    check(phases == {"reading": 1.5}, "phases are those of a run that worked")
+
+
 def main():
     tools = pathlib.Path(sys.argv[1]).resolve()
     check_solid()
@@ -279,6 +303,7 @@ def main():
     check_verdicts()
     check_page()
     check_stopwatch()
+    check_records()
     print(f"1..{count}")
     sys.exit(1 if failed else 0)
 

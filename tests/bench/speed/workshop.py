@@ -212,6 +212,7 @@ class Workshop:
         row = self.jobs[job]
         ours = row["command"].split()[0].startswith("ritz-")
         command, record = self.command(job, model), self.out(model) / "record"
+        record.unlink(missing_ok=True)  # of a run that failed
         if ours:
             more = TOOLS
             command += ["--record", record]
@@ -222,7 +223,6 @@ class Workshop:
         if ours:
             done["said"] = {
                 "phases": json.loads(record.read_text())["phases"]}
-            record.unlink()
         elif done["out"].startswith("{"):
             done["said"] = json.loads(done["out"])
             done["peak"] = done["said"].get("peak_bytes", done["peak"])
