@@ -106,12 +106,14 @@ static ritz_status factor_shifted(ritz_estimator *estimator,
     return status;
 }
 
-/* Both factors. What the count holds is gone when the second try begins. */
+/* Both factors. What the count holds is gone when the second try begins, which
+   one thread makes, too, so that results do not depend on memory. */
 static ritz_status factor_and_count(ritz_estimator *estimator, double rho)
 {
     RITZ_OWN(ritz_sparse) A = {0};
     RITZ_OWN_ARRAY int64_t *order = NULL;
     first_count c = {.full = estimator->component, .rho = rho};
+    const double sigma = estimator->sigma; /* of A */
     ritz_status status = RITZ_OK;
 
     RITZ_CHECK(shift(estimator, &A));
@@ -121,7 +123,8 @@ static ritz_status factor_and_count(ritz_estimator *estimator, double rho)
     status = factor_shifted(estimator, &A, order);
     ritz_aside_end(&c.aside);
     if (status == RITZ_ERR_MEMORY)
-        status = factor_shifted(estimator, NULL, order);
+        status = factor_shifted(estimator,
+                                estimator->sigma == sigma ? &A : NULL, order);
     if (!c.counter)
         return status;
     ritz_counter_share(c.counter, false);
