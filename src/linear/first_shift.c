@@ -96,9 +96,6 @@ ritz_status ritz_first_shift(const ritz_sparse *K, double typical,
     double bending = 1.0;
     int64_t length = 1;
 
-    *out = typical * RITZ_FIRST_SHIFT;
-    if (K->nrow < RITZ_FIRST_FROM)
-        return RITZ_OK;
     RITZ_CHECK(find_length(K, &length));
     bending = RITZ_FIRST_BENDING * pow((double)length, -4.0);
     *out =
