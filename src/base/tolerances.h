@@ -296,7 +296,11 @@
    this part of theta |x|, norms by M. The vectors returned are more accurate,
    by one inverse iteration. */
 #define RITZ_LANCZOS_SETTLED 1e-10
-/* The same if eigenvalues are requested to a relative accuracy: this part of its
+/* The k-th largest eigenvalue of a band matrix is found within this, relative, to
+   have its eigenvector: neighbours are some 1 / k apart. */
+#define RITZ_KTH_WITHIN 1e-7
+/* The same as RITZ_LANCZOS_SETTLED if eigenvalues are requested to a relative
+   accuracy: this part of its
    square root. The error of an eigenvalue is about the square of the residual
    divided by the relative distance to the eigenvalues that are not found, and
    only the last pairs have residuals as large as this. For 500 modes of a solid

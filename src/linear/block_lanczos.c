@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/memory.h"
 #include "base/tolerances.h"
+#include "linear/band.h"
 #include "linear/blas_threads.h"
 #include "linear/block_basis.h"
 #include "linear/factor.h"
@@ -35,6 +36,8 @@ typedef struct block_lanczos {
     double *Z, *theta; /* eigenvectors and eigenvalues of T, ascending */
     int64_t *rank;     /* of theta, by magnitude, the largest first */
     int64_t coupled;   /* T has blocks of the last step from here on */
+    bool restarted;    /* T is no band matrix any more */
+    double kth;        /* a lower bound of the k-th largest theta; 0: unknown */
 } block_lanczos;
 
 static void block_lanczos_free(block_lanczos *L)
@@ -221,15 +224,12 @@ static ritz_status solve_projected(block_lanczos *L)
     return RITZ_OK;
 }
 
-/* q := R z_j of the c-th largest theta (c from 0): z_j are the components of its
-   eigenvector of T for the last step, eight for each block. The norm of q, which
-   is that of the residual, is returned. */
-static double last_part(const block_lanczos *L, int64_t c, const double *R,
-                        double *q)
+/* q := R z_j, z_j the components of an eigenvector of T for the last step, eight
+   for each block. The norm of q, which is that of the residual, is returned. */
+static double couple_next(const block_lanczos *L, const double *z,
+                          const double *R, double *q)
 {
-    const int64_t m = L->b.blocks * B;
     const int64_t last = L->b.width * B;
-    const double *z = L->Z + L->rank[c] * m + (m - last);
     double size = 0.0;
 
     for (int64_t i = 0; i < last; i++) {
@@ -241,6 +241,15 @@ static double last_part(const block_lanczos *L, int64_t c, const double *R,
         size = hypot(size, q[i]);
     }
     return size;
+}
+
+/* q := R z_j of the c-th largest theta, c from 0. */
+static double last_part(const block_lanczos *L, int64_t c, const double *R,
+                        double *q)
+{
+    const int64_t m = L->b.blocks * B;
+
+    return couple_next(L, L->Z + (L->rank[c] + 1) * m - L->b.width * B, R, q);
 }
 
 /* How many theta, counted from the largest, have converged; at most `most`. */
@@ -401,6 +410,7 @@ static ritz_status restart_space(block_lanczos *L, const double *R)
     }
     ritz_block_basis_move_step(&L->b, kept);
     L->coupled = 0;
+    L->restarted = true;
     return RITZ_OK;
 }
 
@@ -409,6 +419,14 @@ static ritz_status restart_space(block_lanczos *L, const double *R)
 static bool is_time_to_look(const block_lanczos *L, int64_t next)
 {
     return L->b.blocks >= next || L->b.blocks == L->room;
+}
+
+/* Whether a single eigenpair of T is found in much less time than all of them, and
+   is enough to know. */
+static bool is_band(const block_lanczos *L)
+{
+    return !L->restarted && L->b.S->below == 0 && L->b.blocks < L->room &&
+           L->b.blocks * B > ALONE;
 }
 
 /* The number of blocks at the next look. A block of B vectors hardly makes more
@@ -420,6 +438,53 @@ static int64_t next_look(const block_lanczos *L, int64_t found)
     const int64_t more = L->b.blocks / 32;
 
     return L->b.blocks + 1 + (missing > more ? missing - 1 : more);
+}
+
+/* The lower triangle of T, which is a band matrix until the first restart: R is
+   upper triangular. */
+static void copy_band(const block_lanczos *L, ritz_band *T)
+{
+    const int64_t w = T->width;
+
+    for (int64_t j = 0; j < T->n; j++)
+        memcpy(T->val + j * (w + 1), L->T + j * (L->room * B + 1),
+               (size_t)(T->n - j <= w ? T->n - j : w + 1) * sizeof *T->val);
+}
+
+/* The least theta that has a direction. */
+static double least_theta(const ritz_band *T)
+{
+    double largest = 0.0;
+
+    for (int64_t j = 0; j < T->n; j++)
+        largest = fmax(largest, T->val[j * (T->width + 1)]);
+    return RITZ_NO_DIRECTION * largest;
+}
+
+/*
+ * Whether the k-th pair has converged, by itself: eigenvectors of all pairs cost
+ * as much as several steps. The others have converged before, as a rule.
+ */
+static ritz_status test_kth(block_lanczos *L, const double *R, bool *converged)
+{
+    const int64_t last = L->b.width * B;
+    RITZ_OWN_ARRAY double *val = NULL, *z = NULL;
+    ritz_band T = {.n = L->b.blocks * B, .width = last};
+    double q[WIDEST * B];
+    bool exists = false;
+
+    *converged = false;
+    RITZ_CHECK_NEW(z, T.n);
+    RITZ_CHECK_NEW(val, T.n * (last + 1));
+    T.val = val;
+    copy_band(L, &T);
+    L->kth = fmax(L->kth, least_theta(&T));
+    RITZ_CHECK(ritz_band_kth(&T, L->k, &L->kth, &exists));
+    if (!exists)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_band_vector(&T, L->kth, z));
+    *converged = couple_next(L, z + T.n - last, R, q) <= L->settled * L->kth;
+    return RITZ_OK;
 }
 
 /* Whether at least k pairs have converged, and S->below of them lie below
@@ -461,13 +526,17 @@ static ritz_status iterate_blocks(block_lanczos *L, double *R, int64_t *found,
     int64_t steps = 0;
     int restarts = 0;
     bool exhausted = false;
+    bool look = false;
     double size = 0.0;
 
     for (;;) {
         ritz_monitor_step("eigenvectors", ++steps, 0);
         expand_space(L, &size);
         RITZ_CHECK(ritz_block_basis_orthonormalise(&L->b, size, R, &exhausted));
-        if (exhausted || is_time_to_look(L, next)) {
+        look = exhausted || is_time_to_look(L, next);
+        if (look && !exhausted && is_band(L))
+            RITZ_CHECK(test_kth(L, R, &look));
+        if (look) {
             RITZ_CHECK(solve_projected(L));
             *found = count_converged(
                 L, L->b.S->below > 0 ? L->b.blocks * B : L->k + SPARES, R);
