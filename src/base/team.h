@@ -3,7 +3,8 @@
  * triangular solve of 100 microseconds.
  *
  * A thread of the team is started when a task first needs it. Between tasks it
- * spins for 200 microseconds and then sleeps. The team does not use OpenMP,
+ * spins for 200 microseconds and then sleeps; it sleeps at once while other
+ * programs need the cores (base/crowd.h). The team does not use OpenMP,
  * so that it behaves alike with every compiler and every BLAS. In its threads
  * OpenMP, and a BLAS that uses it, start no further threads. The caller of a
  * task that calls the BLAS must see to that for itself (linear/blas_threads.h).

@@ -4,6 +4,7 @@
 #include "cli/cores.h"
 
 #include "base/alloc.h"
+#include "base/crowd.h"
 #include "base/draft.h"
 #include "base/text.h"
 
@@ -29,9 +30,12 @@ enum { LARGE = 1 << 20 };
  * How many times an idle thread of GNU OpenMP looks for work before it sleeps.
  * If threads sleep at once, the factor of a model of 55 000 dofs takes 3.0 s;
  * with 3000 to 100 000 times it takes 1.5 s. A larger number keeps cores busy
- * that other threads, of Ritz or of other programs, need.
+ * that other threads, of Ritz or of other programs, need: while another program
+ * has one of two cores, the factor takes 2 s with 100 times and 6 s with 5000,
+ * because threads that spin are stopped when they have work.
  */
 static const char *const SPINS = "5000";
+static const char *const SPINS_CROWDED = "100";
 
 /*
  * How glibc's malloc works for large models: in pages of 2 MiB where the kernel
@@ -66,6 +70,12 @@ static int allowed_threads(void)
     return (int)threads;
 }
 
+/* The thread that asks is one of those that will run. */
+static const char *spins_for(int threads)
+{
+    return ritz_cores_crowded(threads - 1) ? SPINS_CROWDED : SPINS;
+}
+
 /*
  * If the inputs are large and the environment has no limit of threads: set one,
  * and the settings above, and execute the program again, because OpenMP and
@@ -95,7 +105,8 @@ static void limit_threads(cli_run *run, const struct stat *file)
     if (setenv("OMP_THREAD_LIMIT", cores, 1) == 0 &&
         setenv("OMP_NUM_THREADS", cores, 0) == 0 &&
         setenv("GLIBC_TUNABLES", MALLOC, 0) == 0 &&
-        (getenv("OMP_WAIT_POLICY") || setenv("GOMP_SPINCOUNT", SPINS, 0) == 0))
+        (getenv("OMP_WAIT_POLICY") ||
+         setenv("GOMP_SPINCOUNT", spins_for(allowed_threads()), 0) == 0))
         execv(self, run->argv);
 }
 
