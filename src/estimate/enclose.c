@@ -247,13 +247,20 @@ ritz_status ritz_lehmann_polish(ritz_estimator *estimator,
     return ritz_lehmann_of_span(estimator, &Y, out);
 }
 
+static void ritz_lehmann_values_free(ritz_lehmann_values *values)
+{
+    free(values->nu);
+    *values = (ritz_lehmann_values){0};
+}
+
 void ritz_lehmann_free(ritz_lehmann *trial)
 {
+    RITZ_FREE_EACH(ritz_lehmann_values, trial->num_values, trial->values);
     ritz_dense_free(&trial->X);
     ritz_dense_free(&trial->E);
     ritz_dense_free(&trial->G);
     ritz_dense_free(&trial->Q);
-    RITZ_FREE(trial->theta, trial->rounding, trial->mass_terms,
+    RITZ_FREE(trial->kappa, trial->theta, trial->rounding, trial->mass_terms,
               trial->reduced_rounding, trial->reduced_low, trial->reduced_high);
     *trial = (ritz_lehmann){0};
 }
@@ -334,12 +341,13 @@ static ritz_status join_signs(const ritz_dense *L, const double *d,
 
 /* nu for rho, ascending; none where rho is too close to a mode of the trial. */
 static ritz_status solve_lehmann(const ritz_lehmann *trial, double rho,
-                                 ritz_pairs *out)
+                                 ritz_lehmann_values *out)
 {
     int64_t m = trial->count;
     RITZ_OWN_ARRAY double *d = NULL;
     RITZ_OWN(ritz_dense) L = {0}, LJL = {0};
 
+    out->rho = rho;
     RITZ_CHECK_NEW(d, m);
     if (!take_offsets(trial, rho, d))
         return RITZ_OK;
@@ -348,7 +356,28 @@ static ritz_status solve_lehmann(const ritz_lehmann *trial, double rho,
     if (!factor_form(&L))
         return RITZ_OK;
     RITZ_CHECK(join_signs(&L, d, &LJL));
-    return ritz_general_symmetric(&LJL, out);
+    RITZ_CHECK_NEW(out->nu, m);
+    RITZ_CHECK(ritz_general_symmetric_values(&LJL, out->nu));
+    out->count = m;
+    return RITZ_OK;
+}
+
+/* nu for rho, computed once for each trial. Valid until the next call. */
+static ritz_status find_values(ritz_lehmann *trial, double rho,
+                               const ritz_lehmann_values **out)
+{
+    RITZ_OWN(ritz_lehmann_values) found = {0};
+
+    for (int64_t k = 0; k < trial->num_values; k++)
+        if (trial->values[k].rho == rho) {
+            *out = &trial->values[k];
+            return RITZ_OK;
+        }
+    RITZ_CHECK(solve_lehmann(trial, rho, &found));
+    RITZ_CHECK_ROOM(trial->values, trial->num_values, trial->room_values);
+    *out = &trial->values[trial->num_values];
+    RITZ_MOVE(trial->values[trial->num_values++], found);
+    return RITZ_OK;
 }
 
 /* The eigenvalue of kappa = 1 / (lambda - sigma); infinite unless kappa > 0. */
@@ -369,12 +398,10 @@ static double rounding_at(const ritz_lehmann *trial, double rho)
 }
 
 /* Rounding of eigenvalues of a dense matrix. */
-static double rounding_of(const ritz_pairs *nu)
+static double rounding_of(int64_t count, const double *value)
 {
-    int64_t count = nu->Phi.ncol;
-
     return count > 0 ? RITZ_CANCELLED_ROUNDINGS * DBL_EPSILON *
-                           fmax(fabs(nu->lambda[0]), nu->lambda[count - 1])
+                           fmax(fabs(value[0]), value[count - 1])
                      : 0.0;
 }
 
@@ -383,22 +410,23 @@ static double rounding_of(const ritz_pairs *nu)
  * on, or of those above it, from the largest other nu on. Each bound also holds
  * for the modes further away, as rounding may exchange them.
  */
-static void enclose_side(const ritz_lehmann *trial, const ritz_pairs *nu,
-                         double kappa_rho, int64_t below, bool above,
-                         ritz_enclosure *e)
+static void enclose_side(const ritz_lehmann *trial,
+                         const ritz_lehmann_values *values, double kappa_rho,
+                         int64_t below, bool above, ritz_enclosure *e)
 {
-    int64_t count = nu->Phi.ncol;
+    const int64_t count = values->count;
+    const double *nu = values->nu;
+    const double rounded = rounding_of(count, nu);
     int64_t positive = 0; /* the first of these */
-    double off = above ? -rounding_of(nu) : rounding_of(nu);
+    double off = above ? -rounded : rounded;
     double end = above ? 0.0 : HUGE_VAL;
 
-    while (positive < count && nu->lambda[positive] <= 0.0)
+    while (positive < count && nu[positive] <= 0.0)
         positive++;
     for (int64_t k = 0; k < (above ? positive : count - positive); k++) {
         int64_t at = above ? positive - 1 - k : positive + k;
         int64_t p = above ? below + k : below - 1 - k;
-        double lambda =
-            lambda_of(kappa_rho + nu->lambda[at] + off, trial->sigma);
+        double lambda = lambda_of(kappa_rho + nu[at] + off, trial->sigma);
         double rounding = trial->rounding[count - 1 - at];
 
         end =
@@ -411,32 +439,31 @@ static void enclose_side(const ritz_lehmann *trial, const ritz_pairs *nu,
 }
 
 /* Bounds by one count, of the eigenvalues above it or of those below it. */
-static ritz_status use_count(const ritz_lehmann *trial,
-                             const ritz_counted *counted, bool above,
-                             ritz_enclosure *e)
+static ritz_status use_count(ritz_lehmann *trial, const ritz_counted *counted,
+                             bool above, ritz_enclosure *e)
 {
     double off = RITZ_COUNT_MARGIN * rounding_at(trial, counted->rho);
     double rho = counted->rho + (above ? off : -off);
     double kappa_rho = 1.0 / (rho - trial->sigma);
-    RITZ_OWN(ritz_pairs) nu = {0};
+    const ritz_lehmann_values *values = NULL;
 
     if (!(kappa_rho > 0.0))
         return RITZ_OK;
-    RITZ_CHECK(solve_lehmann(trial, rho, &nu));
-    enclose_side(trial, &nu, kappa_rho, counted->below, above, e);
+    RITZ_CHECK(find_values(trial, rho, &values));
+    enclose_side(trial, values, kappa_rho, counted->below, above, e);
     return RITZ_OK;
 }
 
-/* Upper bounds by Ritz values, and by those of one inverse iteration. */
-static ritz_status improve_from_above(const ritz_lehmann *trial,
-                                      ritz_enclosure *e)
+/* The eigenvalues of X'M A^-1 M X, computed once for each trial. */
+static ritz_status find_kappa(ritz_lehmann *trial)
 {
     int64_t m = trial->count;
-    double off = 0.0;
-    double most = 0.0;
     RITZ_OWN(ritz_dense) S = {0};
-    RITZ_OWN(ritz_pairs) kappa = {0};
+    RITZ_OWN_ARRAY double *kappa = NULL;
 
+    if (trial->kappa)
+        return RITZ_OK;
+    RITZ_CHECK_NEW(kappa, m);
     RITZ_CHECK(ritz_dense_new(m, m, &S));
     for (int64_t j = 0; j < m; j++) {
         for (int64_t i = 0; i < m; i++)
@@ -445,13 +472,24 @@ static ritz_status improve_from_above(const ritz_lehmann *trial,
                 (shift_of(trial, i) * shift_of(trial, j));
         ritz_dense_col(&S, j)[j] += 1.0 / shift_of(trial, j);
     }
-    RITZ_CHECK(ritz_general_symmetric(&S, &kappa));
-    off = rounding_of(&kappa);
-    for (int64_t k = 0; k < kappa.Phi.ncol; k++) {
+    RITZ_CHECK(ritz_general_symmetric_values(&S, kappa));
+    RITZ_MOVE(trial->kappa, kappa);
+    return RITZ_OK;
+}
+
+/* Upper bounds by Ritz values, and by those of one inverse iteration. */
+static ritz_status improve_from_above(ritz_lehmann *trial, ritz_enclosure *e)
+{
+    int64_t m = trial->count;
+    double off = 0.0;
+    double most = 0.0;
+
+    RITZ_CHECK(find_kappa(trial));
+    off = rounding_of(m, trial->kappa);
+    for (int64_t k = 0; k < m; k++) {
         double better =
             fmin(trial->theta[k],
-                 lambda_of(kappa.lambda[kappa.Phi.ncol - 1 - k] - off,
-                           trial->sigma));
+                 lambda_of(trial->kappa[m - 1 - k] - off, trial->sigma));
 
         most = fmax(most, better + trial->rounding[k]);
         e->high[k] = fmin(e->high[k], most);
@@ -519,7 +557,7 @@ int64_t ritz_missing_modes(const ritz_measuring *m)
 
 /* Bounds by a trial space and each count. */
 static ritz_status add_trial(const ritz_estimator *estimator,
-                             const ritz_lehmann *trial, ritz_enclosure *e)
+                             ritz_lehmann *trial, ritz_enclosure *e)
 {
     const ritz_counted *counted = estimator->count;
 
@@ -563,7 +601,7 @@ ritz_status ritz_measuring_enclose(ritz_measuring *m)
 {
     const ritz_estimator *estimator = m->estimator;
     const ritz_lehmann *trial = &m->trial;
-    const ritz_lehmann *const all[TRIALS] = {trial, &m->polished, &m->rich};
+    ritz_lehmann *const all[TRIALS] = {&m->trial, &m->polished, &m->rich};
     RITZ_OWN(ritz_enclosure) e = {.count = trial->count};
     const ritz_counted *counted = estimator->count;
     int64_t num_near = 0;

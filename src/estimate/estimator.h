@@ -36,6 +36,13 @@ struct ritz_estimator {
     ritz_counted count[RITZ_MOST_COUNTS]; /* rho ascends */
 };
 
+/* The nu of Lehmann's method for one rho (enclose.c), ascending. */
+typedef struct ritz_lehmann_values {
+    double rho;
+    int64_t count; /* 0: rho is too close to a mode of the trial */
+    double *nu;
+} ritz_lehmann_values;
+
 /*
  * The trial space: the lowest Ritz pairs in the range of a basis, computed anew
  * from the full matrices, and their residuals.
@@ -56,6 +63,10 @@ typedef struct ritz_lehmann {
        inverse iterate empty until ritz_measuring_predict() needs it */
     ritz_dense Q;
     double sigma;
+    double *kappa; /* m, of X'M A^-1 M X, ascending; NULL: not needed yet */
+    /* of each rho that was used: every further count asks for all of them */
+    int64_t num_values, room_values;
+    ritz_lehmann_values *values;
 } ritz_lehmann;
 
 /**

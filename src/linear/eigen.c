@@ -503,6 +503,18 @@ ritz_status ritz_general_symmetric(const ritz_dense *A, ritz_pairs *out)
     return solve_pairs(A, NULL, out);
 }
 
+ritz_status ritz_general_symmetric_values(const ritz_dense *A, double *lambda)
+{
+    RITZ_OWN(ritz_dense) copy = {0};
+    int n = (int)A->nrow;
+
+    RITZ_CHECK(ritz_eigen_refuse(A->nrow, A->ncol, A->nrow, A->ncol));
+    RITZ_CHECK(scale_pencil(A, NULL, &copy));
+    return n == 0 ? RITZ_OK
+                  : lapack_status(LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'N', 'L', n,
+                                                 copy.val, n, lambda));
+}
+
 /*
  * Implicitly restarted Lanczos, ARPACK's mode 3 [LehoucqSorensenYang1998]:
  *

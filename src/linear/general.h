@@ -170,6 +170,14 @@ ritz_status ritz_eigen_residuals(const ritz_dense *K, const ritz_dense *M,
 /** Eigenpairs of a symmetric A, vectors of length one: see ritz_eigen_unchecked. */
 ritz_status ritz_general_symmetric(const ritz_dense *A, ritz_pairs *out);
 
+/**
+ * Eigenvalues alone, ascending, each with an error of some eps of the largest.
+ *
+ * @param[out] lambda  as many as A has rows
+ * @cost   a third of ritz_general_symmetric
+ */
+ritz_status ritz_general_symmetric_values(const ritz_dense *A, double *lambda);
+
 /** to(row.., col..) = sign A, or sign A'. */
 void ritz_general_place(double sign, const ritz_dense *A, bool transposed,
                         int64_t row, int64_t col, ritz_dense *to);

@@ -189,6 +189,30 @@ static void a_mass_that_is_not_definite_is_refused(void **state)
     assert_null(P.lambda);
 }
 
+/* Of two of order n each is off by some n eps |A|. */
+static void eigenvalues_alone_equal_those_with_vectors(void **state)
+{
+    enum { N = 30 };
+    uint64_t seed = 7;
+    RITZ_OWN(ritz_dense) A = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
+    double lambda[N];
+
+    (void)state;
+    assert_ok(ritz_dense_new(N, N, &A));
+    for (int64_t k = 0; k < N * N; k++)
+        A.val[k] = ritz_general_noise(&seed);
+    ritz_dense_symmetrise(&A);
+    assert_ok(ritz_general_symmetric(&A, &pairs));
+    assert_ok(ritz_general_symmetric_values(&A, lambda));
+    for (int64_t k = 0; k < N; k++)
+        assert_near(lambda[k], pairs.lambda[k], N * 2.3e-16 * N);
+    A.nrow = 1;
+    assert_fails(ritz_general_symmetric_values(&A, lambda), RITZ_ERR_ARGUMENT,
+                 "stiffness is 1 x 30");
+    A.nrow = N;
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(modal_coordinates_are_taken_as_they_are),
     cmocka_unit_test(nearly_modal_coordinates_are_solved_as_any_other),
@@ -196,6 +220,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(low_modes_of_dense_pencils_keep_their_digits),
     cmocka_unit_test(heavy_and_light_masses_keep_the_lowest_mode),
     cmocka_unit_test(only_a_gap_makes_a_mode_rigid),
+    cmocka_unit_test(eigenvalues_alone_equal_those_with_vectors),
     cmocka_unit_test(hertz_keep_their_sign),
     cmocka_unit_test(a_mass_that_is_not_definite_is_refused),
 };
