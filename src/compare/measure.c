@@ -40,10 +40,7 @@ static ritz_status respond_at(const ritz_scene *scene,
 
     RITZ_CHECK(find_poles(scene, c, &poles));
     RITZ_CHECK(ritz_response_new(grid, &poles, &made));
-    for (int64_t k = 0; k < made.count; k++)
-        RITZ_CHECK(
-            ritz_poles_add(&poles, made.hertz[k],
-                           made.H + k * made.num_inputs * made.num_outputs));
+    RITZ_CHECK(ritz_poles_add_all(&poles, made.count, made.hertz, made.H));
     RITZ_MOVE(*out, made);
     return RITZ_OK;
 }

@@ -119,6 +119,14 @@ ritz_status ritz_poles_add(const ritz_poles *poles, double hertz,
                            double _Complex *H);
 
 /**
+ * The same at @p count frequencies, with the sum of each where ritz_poles_add
+ * has one: H is num_outputs x num_inputs, row by row, of each frequency in turn.
+ * Several threads may share the poles.
+ */
+ritz_status ritz_poles_add_all(const ritz_poles *poles, int64_t count,
+                               const double *hertz, double _Complex *H);
+
+/**
  * Roots of s^2 + rate s + lambda: a pair, the one above the axis first, or two
  * real ones without cancellation, the larger first.
  */
@@ -253,9 +261,17 @@ ritz_status ritz_ratio_space(const ritz_component *component,
 void ritz_residual_add_ratios(const ritz_residual *residual, double hertz,
                               double _Complex *H);
 
+/** H += the response of the residual without these changes. */
+void ritz_residual_add_series(const ritz_residual *residual, double hertz,
+                              double _Complex *H);
+
 /** H += the response of the residual. */
 void ritz_residual_add(const ritz_residual *residual, double hertz,
                        double _Complex *H);
+
+/** The same at @p count frequencies, as ritz_poles_add_all. */
+ritz_status ritz_residual_add_all(const ritz_residual *residual, int64_t count,
+                                  const double *hertz, double _Complex *H);
 
 void ritz_residual_free(ritz_residual *residual);
 

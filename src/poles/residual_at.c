@@ -51,8 +51,8 @@ void ritz_residual_add_ratios(const ritz_residual *r, double hertz,
     }
 }
 
-void ritz_residual_add(const ritz_residual *residual, double hertz,
-                       double _Complex *H)
+void ritz_residual_add_series(const ritz_residual *residual, double hertz,
+                              double _Complex *H)
 {
     const double *C = residual->part[0], *Cv = residual->part[1],
                  *Ca = residual->part[2];
@@ -72,6 +72,12 @@ void ritz_residual_add(const ritz_residual *residual, double hertz,
         if (term + 1 < residual->count)
             power *= mu / residual->unit;
     }
+}
+
+void ritz_residual_add(const ritz_residual *residual, double hertz,
+                       double _Complex *H)
+{
+    ritz_residual_add_series(residual, hertz, H);
     ritz_residual_add_ratios(residual, hertz, H);
 }
 

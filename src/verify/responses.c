@@ -10,6 +10,7 @@
 #include <ritz/response.h>
 
 #include <complex.h>
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -192,12 +193,9 @@ ritz_status ritz_reference_respond(const ritz_reference *reference,
         RITZ_MOVE(s->full, direct.H);
     } else {
         RITZ_CHECK_NEW(s->full, s->count * s->values);
-        for (int64_t k = 0; k < s->count; k++) {
-            double _Complex *H = s->full + k * s->values;
-
-            RITZ_CHECK(ritz_poles_add(poles, s->hertz[k], H));
-            ritz_residual_add(&reference->residual, s->hertz[k], H);
-        }
+        RITZ_CHECK(ritz_poles_add_all(poles, s->count, s->hertz, s->full));
+        RITZ_CHECK(ritz_residual_add_all(&reference->residual, s->count,
+                                         s->hertz, s->full));
     }
     s->flexible = flexible_part(poles, s);
     return find_significance(poles, s);
@@ -209,14 +207,30 @@ static void keep_larger(double value, double hertz, ritz_extreme *of)
         *of = (ritz_extreme){value, hertz};
 }
 
+static double square_of(double _Complex z)
+{
+    return creal(z) * creal(z) + cimag(z) * cimag(z);
+}
+
+/* Whether |z| is surely less than a, by squares, which are faster than cabs.
+   False where squares overflow, or underflow. */
+static bool is_less(double _Complex z, double a)
+{
+    return square_of(z) < a * a * (1.0 - RITZ_SAME) && a * a >= DBL_MIN;
+}
+
 ritz_status ritz_gap_add(double _Complex H, double _Complex H_r, double hertz,
                          ritz_gap *gap)
 {
-    double error = cabs(H - H_r);
+    double error = 0.0;
 
+    if (!is_less(H, gap->largest))
+        gap->largest = fmax(gap->largest, cabs(H));
+    if (is_less(H - H_r, gap->error.value))
+        return RITZ_OK;
+    error = cabs(H - H_r);
     RITZ_REFUSE_IF(!isfinite(error), RITZ_ERR_CONVERGENCE,
                    "the response at %.6g Hz leaves all bounds", hertz);
-    gap->largest = fmax(gap->largest, cabs(H));
     keep_larger(error, hertz, &gap->error);
     return RITZ_OK;
 }
@@ -229,6 +243,7 @@ static ritz_status compare_sweep(const ritz_sides *sides,
                                  ritz_reference_sweep *s, ritz_gap *gap)
 {
     const int64_t values = s->values;
+    int64_t first = 0;
     double least =
         sides->reduced.num_rigid > 0
             ? RITZ_BAND_START * sides->full->band_hz[1] * (1.0 - RITZ_SAME)
@@ -237,33 +252,51 @@ static ritz_status compare_sweep(const ritz_sides *sides,
     gap->flexible = fmax(gap->flexible, s->flexible);
     gap->significant = gap->significant || s->significant;
     RITZ_CHECK_NEW(s->reduced, s->count * values);
-    for (int64_t k = 0; k < s->count; k++) {
-        double hertz = s->hertz[k];
-        const double _Complex *H = s->full + k * values;
-        double _Complex *H_r = s->reduced + k * values;
-
-        if (hertz < least) {
-            memcpy(H_r, H, (size_t)values * sizeof *H);
-            continue;
-        }
-        RITZ_CHECK_IN("reduced model",
-                      ritz_poles_add(&sides->reduced, hertz, H_r));
-        for (int64_t i = 0; i < values; i++)
-            RITZ_CHECK(ritz_gap_add(H[i], H_r[i], hertz, gap));
-    }
+    while (first < s->count && s->hertz[first] < least)
+        first++; /* frequencies ascend */
+    memcpy(s->reduced, s->full, (size_t)(first * values) * sizeof *s->reduced);
+    RITZ_CHECK_IN("reduced model",
+                  ritz_poles_add_all(&sides->reduced, s->count - first,
+                                     s->hertz + first,
+                                     s->reduced + first * values));
+    for (int64_t e = first * values; e < s->count * values; e++)
+        RITZ_CHECK(
+            ritz_gap_add(s->full[e], s->reduced[e], s->hertz[e / values], gap));
     return RITZ_OK;
+}
+
+/* Levels whose squares differ by less than that of the gap. */
+typedef struct level_band {
+    double low, high; /* of |H_r|^2 / |H|^2 */
+} level_band;
+
+static level_band find_level_band(double db)
+{
+    const double ratio = pow(10.0, db / 10.0);
+
+    return (level_band){(1.0 + RITZ_SAME) / ratio, (1.0 - RITZ_SAME) * ratio};
 }
 
 /* Levels are compared where |H| is not negligible relative to the largest. */
 static void compare_levels(const ritz_reference_sweep *s, ritz_gap *gap)
 {
-    for (int64_t k = 0; k < s->count * s->values; k++) {
-        double a = cabs(s->full[k]);
-        double b = fmax(cabs(s->reduced[k]), RITZ_LEAST_SCALE);
+    level_band band = find_level_band(gap->db.value);
 
-        if (a > RITZ_AUDIBLE * gap->largest)
-            keep_larger(fabs(20.0 * log10(b / a)), s->hertz[k / s->values],
-                        &gap->db);
+    for (int64_t k = 0; k < s->count * s->values; k++) {
+        const double a2 = square_of(s->full[k]);
+        const double b2 = square_of(s->reduced[k]);
+        double a = 0.0, b = 0.0;
+
+        if (b2 > a2 * band.low && b2 < a2 * band.high && a2 >= DBL_MIN &&
+            b2 >= DBL_MIN)
+            continue;
+        a = cabs(s->full[k]);
+        b = fmax(cabs(s->reduced[k]), RITZ_LEAST_SCALE);
+        if (!(a > RITZ_AUDIBLE * gap->largest))
+            continue;
+        keep_larger(fabs(20.0 * log10(b / a)), s->hertz[k / s->values],
+                    &gap->db);
+        band = find_level_band(gap->db.value);
     }
 }
 
