@@ -261,6 +261,10 @@ static ritz_status subspace_mac(const ritz_dense *Q, int64_t first,
     RITZ_OWN(ritz_dense) block = {0};
     RITZ_OWN_ARRAY double *sigma = NULL;
 
+    if (s == 1) {
+        *out = pow(ritz_dense_col(Q, partner[first])[first], 2.0);
+        return RITZ_OK;
+    }
     RITZ_CHECK(ritz_dense_new(s, s, &block));
     RITZ_CHECK_NEW(sigma, s);
     for (int64_t j = 0; j < s; j++)
