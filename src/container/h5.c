@@ -493,8 +493,7 @@ uint64_t ritz_h5_sum(int64_t bytes, const void *values, uint64_t sum)
             memcpy(&w, at + k, 8);
         else
             memcpy(&w, at + k, (size_t)(bytes - k));
-        h = (h ^ w) * 1099511628211U;
-        h ^= h >> 32;
+        h = ritz_h5_sum_word(h, w);
     }
     return h;
 }

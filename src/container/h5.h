@@ -177,6 +177,12 @@ ritz_status ritz_h5_read(hid_t at, const char *name, hid_t type,
  */
 #define RITZ_H5_SUM 14695981039346656037U
 uint64_t ritz_h5_sum(int64_t bytes, const void *values, uint64_t sum);
+static inline uint64_t ritz_h5_sum_word(uint64_t sum, uint64_t word)
+{
+    const uint64_t h = (sum ^ word) * UINT64_C(1099511628211);
+
+    return h ^ h >> 32;
+}
 int64_t ritz_h5_sum_end(uint64_t sum);
 
 /**
@@ -185,11 +191,30 @@ int64_t ritz_h5_sum_end(uint64_t sum);
  */
 uint32_t ritz_h5_fletcher32(int64_t bytes, const void *values);
 
-/** Write all values of an empty set that was created for them, of type
- * @p memory; the file has the bytes that H5Dwrite() would give it. */
-ritz_status ritz_h5_write_values(hid_t set, const char *name, hid_t memory,
-                                 const ritz_h5_shape *shape,
-                                 const void *values);
+/**
+ * Values of a chunk of a vector that the two functions below can write and read:
+ * its chunks have a checksum and no other filter, and its values are numbers of
+ * 8 bytes as they lie in memory, of type @p memory.
+ *
+ * @return 0 if HDF5 itself must write or read it
+ */
+hsize_t ritz_h5_chunk(hid_t set, hid_t memory, const ritz_h5_shape *shape);
+
+/**
+ * Write all @p count values, at least 1, of a set that is still empty, whose
+ * chunks are of @p chunk values. The file has the bytes that H5Dwrite() would
+ * give it.
+ *
+ * @param[out] sum  of all values, as ritz_h5_sum() from RITZ_H5_SUM on
+ */
+ritz_status ritz_h5_write_chunks(hid_t set, const char *name, hsize_t chunk,
+                                 hsize_t count, const void *values,
+                                 uint64_t *sum);
+
+/** Read them. @return RITZ_ERR_FORMAT if the checksum of a chunk does not fit,
+ * or a chunk has another size */
+ritz_status ritz_h5_read_chunks(hid_t set, const char *name, hsize_t chunk,
+                                hsize_t count, void *values, uint64_t *sum);
 
 /** A dense matrix, which h5py shows as shape (nrow, ncol). */
 ritz_status ritz_h5_write_dense(hid_t at, const char *name,

@@ -28,6 +28,7 @@ enum {
     SMALL_BYTES = 8192, /* most bytes of them */
     CHUNK = 65536,      /* values, half of HDF5's chunk cache */
     CHUNK_BYTES = 524288,
+    LARGE = 4 << 20,       /* bytes that another thread sums up */
     ACROSS = 16,           /* columns in a chunk of a tall matrix */
     FEW_CHUNKS = 1024,     /* chunks that any data set may have */
     SMALLEST_CHUNK = 4096, /* mean values of a chunk where there are more */
@@ -237,7 +238,7 @@ static int64_t sum_words(int64_t bytes, const void *values)
     return ritz_h5_sum_end(ritz_h5_sum(bytes, values, RITZ_H5_SUM));
 }
 
-/* A checksum of values that is computed while HDF5 writes them. */
+/* A checksum of a dense matrix, computed while HDF5 writes it. */
 typedef struct sealing {
     int64_t bytes;
     const void *values;
@@ -252,17 +253,8 @@ static void sum_values(void *task)
     seal->checksum = sum_words(seal->bytes, seal->values);
 }
 
-static void begin_seal(int64_t bytes, const void *values, sealing *out)
-{
-    enum { LARGE = 4 << 20 };
-
-    out->bytes = bytes;
-    out->values = values;
-    ritz_aside_begin(sum_values, out, bytes >= LARGE, &out->aside);
-}
-
 /* Store the checksum of a chunked data set, once it is computed. */
-static ritz_status write_seal(hid_t set, const char *name, const sealing *seal)
+static ritz_status write_seal(hid_t set, const char *name, int64_t checksum)
 {
     RITZ_OWN(hid_t) plan = H5Dget_create_plist(set);
     const H5D_layout_t layout = H5Pget_layout(plan);
@@ -271,13 +263,12 @@ static ritz_status write_seal(hid_t set, const char *name, const sealing *seal)
     if (layout != H5D_CHUNKED)
         return RITZ_OK;
     return ritz_context(ritz_h5_set(set, "checksum", H5T_STD_I64LE,
-                                    ritz_h5_scalar(), &seal->checksum),
+                                    ritz_h5_scalar(), &checksum),
                         name);
 }
 
 /* A data set that a script wrote has no checksum, and is not checked. */
-static ritz_status verify_values(hid_t set, const char *name, int64_t bytes,
-                                 const void *values)
+static ritz_status verify_sum(hid_t set, const char *name, int64_t found)
 {
     int64_t checksum = 0;
 
@@ -285,7 +276,7 @@ static ritz_status verify_values(hid_t set, const char *name, int64_t bytes,
         return RITZ_OK;
     RITZ_CHECK_IN(name,
                   ritz_h5_get(set, "checksum", H5T_STD_I64LE, 1, &checksum));
-    RITZ_REFUSE_IF(checksum != sum_words(bytes, values), RITZ_ERR_FORMAT,
+    RITZ_REFUSE_IF(checksum != found, RITZ_ERR_FORMAT,
                    "'%s' is damaged: its checksum does not fit", name);
     return RITZ_OK;
 }
@@ -304,20 +295,39 @@ static int64_t count_bytes(const ritz_h5_shape *shape, hid_t memory)
     return (int64_t)(ritz_h5_volume(shape, INT64_MAX) * H5Tget_size(memory));
 }
 
+/* Write all values of a set, and compute their checksum. */
+static ritz_status write_values(hid_t set, const char *name, hid_t memory,
+                                const ritz_h5_shape *shape, const void *values,
+                                int64_t *checksum)
+{
+    const hsize_t count = ritz_h5_volume(shape, INT64_MAX);
+    const hsize_t chunk = ritz_h5_chunk(set, memory, shape);
+    uint64_t sum = RITZ_H5_SUM;
+    herr_t result = 0;
+
+    if (chunk > 0 && count > 0) {
+        RITZ_CHECK(ritz_h5_write_chunks(set, name, chunk, count, values, &sum));
+        *checksum = ritz_h5_sum_end(sum);
+        return RITZ_OK;
+    }
+    if (count > 0)
+        result = H5Dwrite(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
+    *checksum = sum_words(count_bytes(shape, memory), values);
+    RITZ_REFUSE_IF(result < 0, RITZ_ERR_FILE,
+                   "cannot write '%s', is the disk full?", name);
+    return RITZ_OK;
+}
+
 ritz_status ritz_h5_write(hid_t at, const char *name, hid_t type,
                           ritz_h5_shape shape, const void *values)
 {
     RITZ_OWN(hid_t) memory = H5Tget_native_type(type, H5T_DIR_ASCEND);
     RITZ_OWN(hid_t) set = 0;
-    ritz_status status = RITZ_OK;
-    sealing seal;
+    int64_t checksum = 0;
 
     RITZ_CHECK(create_set(at, name, type, shape, &set));
-    begin_seal(count_bytes(&shape, memory), values, &seal);
-    status = ritz_h5_write_values(set, name, memory, &shape, values);
-    ritz_aside_end(&seal.aside);
-    RITZ_CHECK(status);
-    RITZ_CHECK(write_seal(set, name, &seal));
+    RITZ_CHECK(write_values(set, name, memory, &shape, values, &checksum));
+    RITZ_CHECK(write_seal(set, name, checksum));
     return flush_set(set, name);
 }
 
@@ -358,20 +368,35 @@ ritz_status ritz_h5_expect(hid_t at, const char *name, ritz_h5_shape shape)
     return open_due(at, name, &shape, &set);
 }
 
+/* Read all values of a set, and compare their checksum. */
+static ritz_status read_values(hid_t set, const char *name, hid_t memory,
+                               const ritz_h5_shape *shape, void *values)
+{
+    const hsize_t count = ritz_h5_volume(shape, INT64_MAX);
+    const hsize_t chunk = ritz_h5_chunk(set, memory, shape);
+    uint64_t sum = RITZ_H5_SUM;
+    herr_t result = 0;
+
+    if (chunk > 0 && count > 0) {
+        RITZ_CHECK(ritz_h5_read_chunks(set, name, chunk, count, values, &sum));
+        return verify_sum(set, name, ritz_h5_sum_end(sum));
+    }
+    if (count > 0)
+        result = H5Dread(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
+    RITZ_REFUSE_IF(result < 0, RITZ_ERR_FORMAT, "'%s' is damaged", name);
+    return verify_sum(set, name, sum_words(count_bytes(shape, memory), values));
+}
+
 ritz_status ritz_h5_read(hid_t at, const char *name, hid_t type,
                          ritz_h5_shape shape, void *values)
 {
     RITZ_OWN(hid_t) set = 0, on_file = 0, memory = 0;
-    herr_t result = 0;
 
     RITZ_CHECK(open_due(at, name, &shape, &set));
     on_file = H5Dget_type(set);
     RITZ_CHECK(ritz_h5_match(name, on_file, type, &memory));
     RITZ_CHECK(ritz_h5_take(set, name, measure_values(set, &shape), true));
-    if (ritz_h5_volume(&shape, 1) > 0)
-        result = H5Dread(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
-    RITZ_REFUSE_IF(result < 0, RITZ_ERR_FORMAT, "'%s' is damaged", name);
-    return verify_values(set, name, count_bytes(&shape, memory), values);
+    return read_values(set, name, memory, &shape, values);
 }
 
 /*
@@ -445,17 +470,17 @@ ritz_status ritz_h5_write_dense(hid_t at, const char *name, const ritz_dense *A)
 {
     RITZ_OWN(hid_t) set = 0;
     ritz_status status = RITZ_OK;
-    sealing seal;
+    sealing seal = {.bytes = matrix_bytes(A), .values = A->val};
 
     RITZ_CHECK(create_set(at, name, H5T_IEEE_F64LE,
                           ritz_h5_table(A->nrow, A->ncol), &set));
-    begin_seal(matrix_bytes(A), A->val, &seal);
+    ritz_aside_begin(sum_values, &seal, seal.bytes >= LARGE, &seal.aside);
     status = move_pieces(set, false, A);
     ritz_aside_end(&seal.aside);
     RITZ_REFUSE_IF(status == RITZ_ERR_FILE, RITZ_ERR_FILE,
                    "cannot write '%s', is the disk full?", name);
     RITZ_CHECK(status);
-    RITZ_CHECK(write_seal(set, name, &seal));
+    RITZ_CHECK(write_seal(set, name, seal.checksum));
     return flush_set(set, name);
 }
 
@@ -496,7 +521,7 @@ ritz_status ritz_h5_read_dense(hid_t at, const char *name, int64_t nrow,
     RITZ_REFUSE_IF(status == RITZ_ERR_FILE, RITZ_ERR_FORMAT, "'%s' is damaged",
                    name);
     RITZ_CHECK(status);
-    RITZ_CHECK(verify_values(set, name, matrix_bytes(&A), A.val));
+    RITZ_CHECK(verify_sum(set, name, sum_words(matrix_bytes(&A), A.val)));
     RITZ_CHECK_IN(name, check_dense(&A));
     RITZ_MOVE(*out, A);
     return RITZ_OK;

@@ -26,6 +26,7 @@ static ritz_status write_vector(const char *path, int64_t count,
     const hsize_t chunk = (hsize_t)(count < CHUNK ? count : CHUNK);
     RITZ_OWN(hid_t) file = 0, space = 0, plan = 0;
     ritz_status status = RITZ_OK;
+    uint64_t sum = 0;
     hid_t set = 0;
 
     RITZ_CHECK(ritz_h5_create(path, &file));
@@ -37,15 +38,34 @@ static ritz_status write_vector(const char *path, int64_t count,
     set = H5Dcreate2(file, "x", H5T_IEEE_F64LE, space, H5P_DEFAULT, plan,
                      H5P_DEFAULT);
     assert_true(set > 0);
+    assert_int_equal(ritz_h5_chunk(set, H5T_NATIVE_DOUBLE, &shape), chunk);
+    assert_int_equal(ritz_h5_chunk(set, H5T_NATIVE_FLOAT, &shape), 0);
     if (by_hdf5)
         assert_true(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL,
                              H5P_DEFAULT, values) >= 0);
     else
         status =
-            ritz_h5_write_values(set, "x", H5T_NATIVE_DOUBLE, &shape, values);
+            ritz_h5_write_chunks(set, "x", chunk, shape.dims[0], values, &sum);
+    if (!by_hdf5 && status == RITZ_OK)
+        assert_int_equal(sum, ritz_h5_sum(8 * count, values, RITZ_H5_SUM));
     ritz_h5_close(set);
     RITZ_CHECK(status);
     return ritz_h5_finish(&file);
+}
+
+/* Read it by chunks, as another program may have written it. */
+static ritz_status read_vector(const char *path, int64_t count, double *values,
+                               uint64_t *sum)
+{
+    const ritz_h5_shape shape = ritz_h5_vector(count);
+    RITZ_OWN(hid_t) file = 0, set = 0;
+
+    RITZ_CHECK(ritz_h5_open(path, &file));
+    set = H5Dopen2(file, "x", H5P_DEFAULT);
+    assert_true(set > 0);
+    return ritz_h5_read_chunks(set, "x",
+                               ritz_h5_chunk(set, H5T_NATIVE_DOUBLE, &shape),
+                               shape.dims[0], values, sum);
 }
 
 static void assert_same_files(void)
@@ -81,6 +101,17 @@ static void fill(int64_t count, double *values, int kind)
         values[k] = 0.0;
 }
 
+static void assert_reads_back(int64_t count, const double *values)
+{
+    RITZ_OWN_ARRAY double *found = calloc((size_t)count, sizeof *found);
+    uint64_t sum = 0;
+
+    assert_non_null(found);
+    assert_ok(read_vector(theirs, count, found, &sum));
+    assert_memory_equal(found, values, (size_t)count * sizeof *found);
+    assert_int_equal(sum, ritz_h5_sum(8 * count, values, RITZ_H5_SUM));
+}
+
 static void files_are_those_of_hdf5(void **)
 {
     static const int64_t counts[] = {1, 255, 256, 257, 1000, 1001, 5999};
@@ -95,6 +126,7 @@ static void files_are_those_of_hdf5(void **)
             assert_ok(write_vector(ours, counts[k], values, false));
             assert_ok(write_vector(theirs, counts[k], values, true));
             assert_same_files();
+            assert_reads_back(counts[k], values);
         }
 }
 
@@ -125,6 +157,60 @@ static void checksums_are_sums_of_words(void **)
     }
 }
 
+/* 6 MB, so that another thread computes the checksums. */
+static void two_threads_write_and_read_the_same(void **)
+{
+    enum { COUNT = 750001 };
+    RITZ_OWN_ARRAY double *values = calloc(COUNT, sizeof *values);
+
+    assert_non_null(values);
+    fill(COUNT, values, 0);
+    assert_ok(write_vector(theirs, COUNT, values, true));
+    for (int threads = 1; threads <= 2; threads++) {
+        ritz_set_threads(threads);
+        assert_ok(write_vector(ours, COUNT, values, false));
+        assert_same_files();
+        assert_reads_back(COUNT, values);
+    }
+    ritz_set_threads(1);
+}
+
+/* Invert the byte of the file that is @p from its end. */
+static void damage_byte(long from)
+{
+    FILE *file = fopen(ours, "r+b");
+    int byte = 0;
+
+    assert_non_null(file);
+    assert_int_equal(fseek(file, from, SEEK_END), 0);
+    byte = getc(file);
+    assert_int_equal(fseek(file, from, SEEK_END), 0);
+    putc(~byte, file);
+    fclose(file);
+}
+
+/* The chunks of the data set are the end of the file. */
+static void damaged_chunks_are_refused(void **)
+{
+    enum { COUNT = 750001 };
+    static const long places[] = {-1, -5, -4000000};
+    RITZ_OWN_ARRAY double *values = calloc(COUNT, sizeof *values);
+    uint64_t sum = 0;
+
+    assert_non_null(values);
+    fill(COUNT, values, 0);
+    for (int threads = 1; threads <= 2; threads++)
+        for (size_t k = 0; k < sizeof places / sizeof *places; k++) {
+            ritz_set_threads(threads);
+            assert_ok(write_vector(ours, COUNT, values, false));
+            damage_byte(places[k]);
+            assert_fails(read_vector(ours, COUNT, values, &sum),
+                         RITZ_ERR_FORMAT, "'x' is damaged");
+            fill(COUNT, values, 0);
+        }
+    ritz_set_threads(1);
+}
+
 static ritz_status write_some(void)
 {
     const double values[2 * CHUNK] = {1.0, 2.0};
@@ -140,6 +226,8 @@ static void writing_survives_every_allocation(void **)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(files_are_those_of_hdf5),
     cmocka_unit_test(checksums_are_sums_of_words),
+    cmocka_unit_test(two_threads_write_and_read_the_same),
+    cmocka_unit_test(damaged_chunks_are_refused),
     cmocka_unit_test(writing_survives_every_allocation),
 };
 
