@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/bytes.h"
 #include "base/text.h"
+#include "formats/matrix.h"
 
 #include <ritz/import.h>
 
@@ -78,6 +79,7 @@ ritz_status ritz_foreign_context(const ritz_foreign *file, ritz_status status)
 void ritz_foreign_free(ritz_foreign *file)
 {
     ritz_digest_end(&file->summing, NULL);
+    ritz_listing_clear(&file->listing);
     RITZ_FREE(file->path, file->folder, file->owned, file->listing.item);
     *file = (ritz_foreign){0};
 }

@@ -14,6 +14,8 @@ ritz_status ritz_triplets_reserve(ritz_triplets *list, int64_t more)
 
     if (more <= list->room - used)
         return RITZ_OK;
+    RITZ_REFUSE_IF(list->borrowed, RITZ_ERR_FORMAT,
+                   "more values than were counted");
     RITZ_CHECK(ritz_array_extend(&list->row, used, longer, sizeof *list->row));
     if (!list->counts)
         RITZ_CHECK(
@@ -23,6 +25,18 @@ ritz_status ritz_triplets_reserve(ritz_triplets *list, int64_t more)
         RITZ_CHECK(
             ritz_array_extend(&list->im, used, longer, sizeof *list->im));
     list->room = room;
+    return RITZ_OK;
+}
+
+ritz_status ritz_triplets_room(ritz_triplets *list, int64_t count)
+{
+    RITZ_CHECK_RAW(list->row, count);
+    if (!list->counts)
+        RITZ_CHECK_RAW(list->col, count);
+    RITZ_CHECK_RAW(list->re, count);
+    if (list->is_complex)
+        RITZ_CHECK_RAW(list->im, count);
+    list->room = count;
     return RITZ_OK;
 }
 
@@ -143,6 +157,29 @@ void ritz_matrices_free(ritz_matrices *matrices)
 {
     RITZ_FREE_EACH(ritz_matrix, matrices->count, matrices->matrix);
     *matrices = (ritz_matrices){0};
+}
+
+void ritz_marks_add(ritz_marks *marks, const ritz_mark *mark)
+{
+    const int64_t most = (int64_t)(sizeof marks->mark / sizeof *marks->mark);
+
+    if (marks->count > 0 &&
+        mark->at - marks->mark[marks->count - 1].at < marks->apart)
+        return;
+    if (marks->count == most) {
+        for (int64_t k = 1; k < most / 2; k++)
+            marks->mark[k] = marks->mark[2 * k];
+        marks->count = most / 2;
+        marks->apart *= 2;
+    }
+    marks->mark[marks->count++] = *mark;
+}
+
+void ritz_listing_clear(ritz_listing *listing)
+{
+    for (int64_t k = 0; k < listing->count; k++)
+        free(listing->item[k].marks);
+    listing->count = 0;
 }
 
 ritz_status ritz_listing_add(ritz_listing *listing, const ritz_listed *item)

@@ -113,16 +113,15 @@ static ritz_status end_matrix(ritz_output4_build *build, ritz_matrix *out)
     return RITZ_OK;
 }
 
-/* Read the matrix whose header was taken. @param[in] end  as for
- * ritz_output4_read_columns() */
+/* Read the matrix whose header was taken. */
 static ritz_status read_columns(ritz_output4_reader *r,
                                 const ritz_output4_header *header,
-                                const char *end, ritz_matrix *out)
+                                const ritz_marks *marks, ritz_matrix *out)
 {
     RITZ_OWN(ritz_output4_build) build = {0};
     RITZ_OWN(ritz_matrix) new = {.digits = r->digits};
 
-    RITZ_CHECK(ritz_output4_read_columns(r, header, end, &build));
+    RITZ_CHECK(ritz_output4_read_columns(r, header, marks, &build));
     snprintf(new.spelling, sizeof new.spelling, "OUTPUT4 %s, %s, %s",
              r->as->name,
              !build.sparse    ? "dense"
@@ -132,17 +131,6 @@ static ritz_status read_columns(ritz_output4_reader *r,
     RITZ_CHECK(end_matrix(&build, &new));
     RITZ_MOVE(*out, new);
     return RITZ_OK;
-}
-
-/* The byte behind a matrix: where the next one begins, or the file ends. */
-static const char *find_end(const ritz_foreign *file, const ritz_listed *which)
-{
-    const ritz_listing *all = &file->listing;
-
-    for (int64_t k = 0; k < all->count; k++)
-        if (all->item[k].at > which->at)
-            return file->bytes + all->item[k].at;
-    return file->bytes + file->size;
 }
 
 static ritz_status read_matrix(const ritz_foreign *file,
@@ -157,24 +145,49 @@ static ritz_status read_matrix(const ritz_foreign *file,
     r.text.at = file->bytes + which->at;
     r.text.number = which->line - 1;
     RITZ_CHECK(r.as->take_header(&r, &header, &found));
-    return read_columns(&r, &header, find_end(file, which), out);
+    return read_columns(&r, &header, which->marks, out);
 }
 
 /* ---- directory ---------------------------------------------------------- */
 
+/* Bytes of a file from which its matrices get marks. */
+enum { LARGE = 2 << 20, APART = 256 << 10 };
+
 /* Where counts do not lead behind a matrix, or values are to be checked, it is
  * read. */
 static ritz_status pass_matrix(ritz_output4_reader *r,
-                               const ritz_output4_header *header, bool check)
+                               const ritz_output4_header *header, bool check,
+                               ritz_marks **out)
 {
     RITZ_OWN(ritz_matrix) unused = {0};
+    RITZ_OWN_ARRAY ritz_marks *marks = NULL;
     ritz_output4_reader ahead = *r;
     int64_t size = 0;
 
-    if (check || !ritz_output4_skip_columns(&ahead, header, &size))
+    if (!check && r->text.end - r->text.at >= LARGE) {
+        RITZ_CHECK_NEW(marks, 1);
+        marks->apart = APART;
+    }
+    if (check || !ritz_output4_skip_columns(&ahead, header, &size, marks))
         return read_columns(r, header, NULL, &unused);
+    if (marks && ahead.text.at - r->text.at >= LARGE && marks->count > 1)
+        RITZ_MOVE(*out, marks);
     *r = ahead;
     return RITZ_OK;
+}
+
+/* What the header of a matrix says in the directory. */
+static void describe_header(const ritz_output4_header *header, ritz_listed *out)
+{
+    *out = (ritz_listed){
+        .nrow = header->nrow,
+        .ncol = header->ncol,
+        .symmetric = header->symmetric,
+        .is_complex = header->numbers == 2,
+        .at = header->at,
+        .line = header->line,
+    };
+    memcpy(out->name, header->name, sizeof out->name);
 }
 
 static ritz_status list_matrices(const ritz_foreign *file, bool check,
@@ -192,15 +205,10 @@ static ritz_status list_matrices(const ritz_foreign *file, bool check,
         RITZ_CHECK(r.as->take_header(&r, &header, &found));
         if (!found)
             return RITZ_OK;
-        item.nrow = header.nrow;
-        item.ncol = header.ncol;
-        item.symmetric = header.symmetric;
-        item.is_complex = header.numbers == 2;
-        item.at = header.at;
-        item.line = header.line;
-        memcpy(item.name, header.name, sizeof item.name);
+        describe_header(&header, &item);
         RITZ_CHECK(ritz_listing_add(out, &item));
-        RITZ_CHECK(pass_matrix(&r, &header, check));
+        RITZ_CHECK(
+            pass_matrix(&r, &header, check, &out->item[out->count - 1].marks));
     }
 }
 
@@ -210,7 +218,7 @@ static ritz_status list_file(const ritz_foreign *file, ritz_listing *out)
     ritz_status status = list_matrices(file, false, out);
 
     if (status == RITZ_ERR_FORMAT) {
-        out->count = 0;
+        ritz_listing_clear(out);
         status = list_matrices(file, true, out);
     }
     RITZ_CHECK(status);

@@ -32,12 +32,11 @@ typedef struct ritz_output4_build {
     int64_t column;  /* the one being read, from 0; -1 before the first */
     char where[RITZ_NAME_SIZE + 32]; /* "column 1 of 'KAA'" */
     int64_t first;                   /* entry of this column */
-    int64_t below;        /* first row that the next string may have, from 0 */
-    int64_t rule;         /* how headers of strings are read, RITZ_OUTPUT4_* */
-    int64_t wide;         /* words of a real, if headers are read so */
-    int64_t first_column; /* the first that was read, from 0 */
-    bool sparse;          /* a column was stored as strings */
-    bool ended;           /* the last column was read */
+    int64_t below; /* first row that the next string may have, from 0 */
+    int64_t rule;  /* how headers of strings are read, RITZ_OUTPUT4_* */
+    int64_t wide;  /* words of a real, if headers are read so */
+    bool sparse;   /* a column was stored as strings */
+    bool ended;    /* the last column was read */
 } ritz_output4_build;
 
 void ritz_output4_build_free(ritz_output4_build *build);
@@ -104,11 +103,12 @@ typedef struct ritz_output4_spelling {
     /** Move behind a column; false if its counts do not lead there. NULL: it
      * was taken whole. */
     bool (*skip_column)(ritz_output4_reader *r, const int64_t n[3]);
-    /** Where a column begins, at or behind @p from; NULL if none is found.
-     * @p from is not before the reader's position, which is that of a column.
-     * What is returned may only look like the beginning of a column: the caller
-     * checks it by reading up to there. */
-    const char *(*find_column)(const ritz_output4_reader *r, const char *from);
+    /** Move behind a column like skip_column, and count its values; strings are
+     * read by build->rule and build->wide. @return -1 if its counts do not lead
+     * there; the reader is then anywhere */
+    int64_t (*count_column)(ritz_output4_reader *r,
+                            const ritz_output4_build *build,
+                            const int64_t n[3]);
     /** Take what stands behind ICOL = NCOL + 1. NULL: it was taken whole. */
     ritz_status (*skip_last)(ritz_output4_reader *r,
                              const ritz_output4_build *build, int64_t words);
@@ -118,29 +118,33 @@ typedef struct ritz_output4_spelling {
 
 /**
  * Read all columns of a matrix whose header was taken: by several threads if
- * @p end is known, the matrix is large and ritz_set_threads() allows it. The
- * entries are the same, in the same order, as one thread reads.
+ * there are marks and ritz_set_threads() allows it. The entries are the same, in
+ * the same order, as one thread reads.
  *
- * @param[in,out] r    moved behind the matrix if one thread reads, as it does
- *                     with @p end NULL; otherwise left where it is
- * @param[in]     end  the byte behind the matrix, NULL if it is not known
- * @param[out]    out  freed by ritz_output4_build_free()
+ * @param[in,out] r      moved behind the matrix if one thread reads, as it does
+ *                       without marks; otherwise left where it is
+ * @param[in]     marks  NULL if there are none
+ * @param[out]    out    freed by ritz_output4_build_free()
  * @return RITZ_ERR_FORMAT, its sentence naming the column; RITZ_ERR_MEMORY
  */
 ritz_status ritz_output4_read_columns(ritz_output4_reader *r,
                                       const ritz_output4_header *header,
-                                      const char *end, ritz_output4_build *out);
+                                      const ritz_marks *marks,
+                                      ritz_output4_build *out);
 
 /**
  * Move behind a matrix by the counts in the headers of its columns, without
  * reading numbers.
  *
- * @param[out] size  bytes of the columns' records in a binary file, 0 in text
+ * @param[out]    size   bytes of the columns' records in a binary file, 0 in
+ *                       text
+ * @param[in,out] marks  set; left without marks if the values of a column cannot
+ *                       be counted. NULL: not wanted
  * @return false if a count does not lead to another column
  */
 bool ritz_output4_skip_columns(ritz_output4_reader *r,
-                               const ritz_output4_header *header,
-                               int64_t *size);
+                               const ritz_output4_header *header, int64_t *size,
+                               ritz_marks *marks);
 
 extern const ritz_output4_spelling ritz_output4_text;
 extern const ritz_output4_spelling ritz_output4_binary;

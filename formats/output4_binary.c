@@ -241,50 +241,26 @@ static ritz_status read_record_dense(ritz_output4_reader *b,
     return read_record_numbers(b, build, n[1] - 1, reals);
 }
 
-/* Whether `LOOKED_AT` records in a row begin at `at`, whose lengths stand at
- * both ends and whose first numbers ascend, as those of columns do. */
-static bool looks_like_columns(const ritz_output4_reader *b, const char *at)
+static int64_t count_record(ritz_output4_reader *b,
+                            const ritz_output4_build *build, const int64_t n[3])
 {
-    enum { LOOKED_AT = 4 };
-    int64_t column = 0;
+    const int64_t integers = ritz_output4_count_integers(build);
+    int64_t reals = 0;
 
-    for (int k = 0; k < LOOKED_AT; k++) {
-        const int64_t left = b->text.end - at - 2 * b->mark;
-        int64_t size = 0, number = 0;
+    if (n[1] != 0)
+        return (b->data_end - b->data) / (b->real * build->header.numbers);
+    for (int64_t left = n[2]; left > 0;) {
+        ritz_output4_string string = {0};
+        int64_t header[2] = {0};
 
-        if (left < 3 * b->integer)
-            return false;
-        size = load_integer(b, at, b->mark);
-        if (size < 3 * b->integer || size > left ||
-            load_integer(b, at + b->mark + size, b->mark) != size)
-            return false;
-        number = load_integer(b, at + b->mark, b->integer);
-        if (number <= column)
-            return false;
-        column = number;
-        at += size + 2 * b->mark;
+        load_integers(b, b->data, integers < left ? integers : left, header);
+        if (!ritz_output4_decode_string(build, header, left, &string))
+            return -1;
+        b->data += integers * b->integer + string.reals * b->real;
+        reals += string.reals;
+        left -= string.words;
     }
-    return true;
-}
-
-/* A record that begins at `from` or behind it: the first place that looks like
- * columns, or, if there is none nearby, found by passing from record to record
- * by their lengths. */
-static const char *find_record(const ritz_output4_reader *b, const char *from)
-{
-    enum { NEARBY = 1 << 16 };
-    ritz_output4_reader ahead = *b;
-    ritz_binary_record passed = {0};
-    const char *at = from + (b->text.at - from) % 4; /* as records are */
-
-    at = at < from ? at + 4 : at;
-    for (int64_t k = 0; k < NEARBY; k += 4)
-        if (b->text.end - at > k && looks_like_columns(b, at + k))
-            return at + k;
-    while (ahead.text.at < from)
-        if (take_record(&ahead, &passed) != RITZ_OK || passed.size < 0)
-            return NULL;
-    return ahead.text.at;
+    return reals / build->header.numbers;
 }
 
 const ritz_output4_spelling ritz_output4_binary = {
@@ -295,5 +271,5 @@ const ritz_output4_spelling ritz_output4_binary = {
     .read_dense = read_record_dense,
     .take_string = take_record_string,
     .read_numbers = read_record_numbers,
-    .find_column = find_record,
+    .count_column = count_record,
 };

@@ -1,11 +1,15 @@
 /*
  * The columns of an OUTPUT4 matrix, read by one thread or by several.
  *
- * For several threads the columns are cut into shares, contiguous runs of
- * columns; one thread reads a share. A share begins where find_column() of the
- * spelling (text or binary) sees the header of a column, which in text may be a
- * mistake. So the shares are used only if one thread would have read the same:
- * each share ends where the next one begins, columns ascend, and no share had
+ * When the directory of a file is made, the values of each column are counted by
+ * its headers, and marks are set at some columns. For several threads the
+ * columns from one mark to the next are a share, which one thread reads. It
+ * writes the entries to their places in the whole matrix, since the number of
+ * values before the share is known. Zeros are counted but not kept; the gaps
+ * that they leave are closed at the end.
+ *
+ * Shares are used only if one thread would have read the same: each share ends
+ * where the next one begins, at the column that the mark says, and no share had
  * to change how headers of strings are read. Otherwise, for example in a
  * damaged file, one thread reads all columns once more and reports the first
  * error.
@@ -86,8 +90,6 @@ static ritz_status begin_column(ritz_output4_build *build, int64_t column)
     RITZ_REFUSE_IF(column <= build->column + 1, RITZ_ERR_FORMAT,
                    "column %" PRId64 " of '%s' follows column %" PRId64, column,
                    build->header.name, build->column + 1);
-    if (build->column < 0)
-        build->first_column = column - 1;
     build->column = column - 1;
     name_column(build);
     build->first = build->entries.count;
@@ -153,22 +155,48 @@ static ritz_status read_sparse(ritz_output4_reader *r,
     return try_strings(r, &start, build, rule, wide, words);
 }
 
-bool ritz_output4_skip_columns(ritz_output4_reader *r,
-                               const ritz_output4_header *header, int64_t *size)
+/* Move behind a column. With marks, its values are counted too; if they cannot
+ * be, the marks are removed. */
+static bool pass_column(ritz_output4_reader *r, const ritz_output4_build *build,
+                        const int64_t n[3], ritz_marks *marks)
 {
-    const ritz_output4_build build = {.header = *header};
+    const ritz_output4_reader before = *r;
+    int64_t values = 0;
+
+    if (marks && marks->count > 0) {
+        values = r->as->count_column(r, build, n);
+        if (values >= 0) {
+            marks->values += values;
+            return true;
+        }
+        marks->count = 0;
+        *r = before;
+    }
+    return !r->as->skip_column || r->as->skip_column(r, n);
+}
+
+bool ritz_output4_skip_columns(ritz_output4_reader *r,
+                               const ritz_output4_header *header, int64_t *size,
+                               ritz_marks *marks)
+{
+    const ritz_output4_build build = {
+        .header = *header, .rule = begin_rule(header), .wide = r->wide};
     int64_t column = 0;
     int64_t n[3] = {0};
 
     *size = 0;
     while (column <= header->ncol) {
+        const ritz_mark mark = {r->text.at - r->begin, r->text.number, column,
+                                marks ? marks->values : 0};
+
         if (r->as->take_column(r, &build, n) != RITZ_OK || n[0] <= column ||
             n[0] > header->ncol + 1)
             return false;
+        if (marks && (marks->count > 0 || column == 0))
+            ritz_marks_add(marks, &mark);
         column = n[0];
         *size += r->data_end - r->data;
-        if (column <= header->ncol && r->as->skip_column &&
-            !r->as->skip_column(r, n))
+        if (column <= header->ncol && !pass_column(r, &build, n, marks))
             return false;
     }
     return !r->as->skip_last || r->as->skip_last(r, &build, n[2]) == RITZ_OK;
@@ -184,7 +212,7 @@ static int64_t most_entries(const ritz_output4_reader *r,
     int64_t most = (r->text.end - r->text.at) / (r->width > 0 ? r->width : 1);
 
     if (r->width == 0) {
-        (void)ritz_output4_skip_columns(&ahead, h, &most);
+        (void)ritz_output4_skip_columns(&ahead, h, &most, NULL);
         most /= r->real;
     }
     most /= h->numbers;
@@ -219,177 +247,154 @@ static ritz_status read_until(ritz_output4_reader *r, ritz_output4_build *build,
 
 /* ---- columns by several threads ----------------------------------------- */
 
-enum { SHARE_BYTES = 1 << 20 }; /* one thread for each so many bytes */
-
 typedef struct ritz_output4_share {
     ritz_output4_reader r;
-    ritz_output4_build build;
-    const char *stop; /* where the next share begins; NULL for the last */
+    ritz_output4_build build; /* its entries are borrowed from the whole */
     ritz_status status;
-    int64_t offset; /* its first entry in the matrix */
 } ritz_output4_share;
 
 typedef struct ritz_output4_shares {
-    int64_t count;
+    const ritz_marks *marks;
+    ritz_output4_build whole;
     ritz_output4_share share[RITZ_TEAM_SHARES];
-    ritz_output4_header header;
-    const char *end; /* the byte behind the matrix */
 } ritz_output4_shares;
 
 static void ritz_output4_shares_free(ritz_output4_shares *all)
 {
-    for (int64_t k = 0; k < all->count; k++)
-        ritz_output4_build_free(&all->share[k].build);
+    ritz_output4_build_free(&all->whole);
 }
 
-/* Cut the bytes from the reader to `end` into at most `most` shares. */
-static void cut_shares(const ritz_output4_reader *r, const char *end,
-                       int64_t most, ritz_output4_shares *all)
+/* The entries from `first` on, as a list that is empty and cannot grow. */
+static ritz_triplets borrow_entries(const ritz_triplets *from, int64_t first,
+                                    int64_t room)
 {
-    const char *begin = r->text.at;
-    const char *at = begin;
-
-    for (int64_t k = 0; k < most && at && at < end; k++) {
-        ritz_output4_share *share = &all->share[all->count++];
-        const char *from = begin + (end - begin) / most * (k + 1);
-
-        share->r = *r;
-        share->r.text.at = at;
-        at = r->as->find_column(&share->r, from > at ? from : at);
-        if (k + 1 < most && at && at < end)
-            share->stop = at;
-    }
+    return (ritz_triplets){.room = room,
+                           .row = from->row + first,
+                           .counts = from->counts,
+                           .re = from->re + first,
+                           .im = from->im ? from->im + first : NULL,
+                           .is_complex = from->is_complex,
+                           .borrowed = true};
 }
 
-/*
- * How many entries a share gets room for: as many as its bytes can hold. The
- * first share gets room for all entries of the matrix, because those of the
- * other shares are copied behind its own. Room that is not used takes no
- * memory.
- */
-static int64_t share_room(const ritz_output4_shares *all,
-                          const ritz_output4_share *share)
+/* Values before share @p k; of all shares if there is none. */
+static int64_t values_before(const ritz_marks *marks, int64_t k)
 {
-    const ritz_output4_reader *r = &share->r;
-    const char *stop =
-        share->stop && share != all->share ? share->stop : all->end;
-    int64_t each = r->width > 0 ? r->width : r->real;
-    int64_t most = (stop - r->text.at) / (each * all->header.numbers);
-    int64_t nrow = all->header.nrow;
-
-    return nrow > 0 && most / nrow < all->header.ncol ? most
-                                                      : nrow * all->header.ncol;
+    return k < marks->count ? marks->mark[k].values : marks->values;
 }
 
-static ritz_status begin_share(const ritz_output4_shares *all,
-                               ritz_output4_share *share)
+static void begin_share(const ritz_output4_reader *r, int64_t k,
+                        ritz_output4_shares *all)
 {
-    const ritz_output4_reader *r = &share->r;
-    ritz_output4_build *build = &share->build;
+    const ritz_mark *mark = &all->marks->mark[k];
+    ritz_output4_share *share = &all->share[k];
+    const int64_t first = values_before(all->marks, k);
 
-    RITZ_CHECK(begin_matrix(&all->header, r->text.end - r->begin, build));
-    build->wide = r->wide;
-    return ritz_triplets_reserve(&build->entries, share_room(all, share));
+    share->r = *r;
+    share->r.text.at = r->begin + mark->at;
+    share->r.text.number = mark->line;
+    share->build = all->whole;
+    share->build.column = mark->column - 1;
+    share->build.entries = borrow_entries(
+        &all->whole.entries, first, values_before(all->marks, k + 1) - first);
 }
 
 static void read_share(int64_t k, void *task)
 {
     ritz_output4_shares *all = task;
+    const ritz_marks *marks = all->marks;
     ritz_output4_share *share = &all->share[k];
+    const char *stop =
+        k + 1 < marks->count ? share->r.begin + marks->mark[k + 1].at : NULL;
 
-    share->status = begin_share(all, share);
-    if (share->status == RITZ_OK)
-        share->status = read_until(&share->r, &share->build, share->stop);
+    share->status = read_until(&share->r, &share->build, stop);
 }
 
 /* Whether one thread would have read the same as the shares: see the head. */
 static bool do_shares_join(const ritz_output4_shares *all)
 {
-    const ritz_output4_build *first = &all->share[0].build;
-    const int64_t rule = begin_rule(&all->header);
-    int64_t column = -1;
+    const ritz_marks *marks = all->marks;
 
-    for (int64_t k = 0; k < all->count; k++) {
+    for (int64_t k = 0; k < marks->count; k++) {
         const ritz_output4_share *share = &all->share[k];
         const ritz_output4_build *build = &share->build;
-        bool last = k + 1 == all->count;
+        const ritz_mark *next = &marks->mark[k + 1];
 
-        if (share->status != RITZ_OK || build->ended != last ||
-            (!last && share->r.text.at != share->stop))
+        if (share->status != RITZ_OK || build->rule != all->whole.rule ||
+            build->wide != all->whole.wide)
             return false;
-        if (!last && (build->rule != rule || build->wide != share->r.wide))
+        if (k + 1 == marks->count)
+            return build->ended;
+        if (build->ended || share->r.text.at != share->r.begin + next->at ||
+            build->column != next->column - 1)
             return false;
-        if (build->column >= 0 && build->first_column <= column)
-            return false;
-        column = build->column >= 0 ? build->column : column;
     }
-    return first->entries.counts != NULL;
+    return false;
 }
 
-/* Copy the entries of share k behind those of the shares before it. */
-static void join_share(int64_t k, void *task)
+/* Move the entries of the shares together, where zeros have left gaps. */
+static void close_gaps(const ritz_output4_shares *all, ritz_triplets *whole)
 {
-    ritz_output4_shares *all = task;
-    ritz_output4_build *build = &all->share[k].build;
-    ritz_triplets *to = &all->share[0].build.entries;
-    const ritz_triplets *from = &build->entries;
-    const int64_t at = all->share[k].offset;
+    for (int64_t k = 0; k < all->marks->count; k++) {
+        const ritz_triplets *from = &all->share[k].build.entries;
+        const size_t count = (size_t)from->count;
 
-    if (k == 0) /* the others are copied behind it */
-        return;
-    memcpy(to->row + at, from->row, (size_t)from->count * sizeof *from->row);
-    memcpy(to->re + at, from->re, (size_t)from->count * sizeof *from->re);
-    if (to->im)
-        memcpy(to->im + at, from->im, (size_t)from->count * sizeof *from->im);
-    if (build->column >= 0)
-        memcpy(to->counts + build->first_column + 1,
-               from->counts + build->first_column + 1,
-               (size_t)(build->column - build->first_column + 1) *
-                   sizeof *to->counts);
-    ritz_output4_build_free(build);
+        if (from->row != whole->row + whole->count && count > 0) {
+            memmove(whole->row + whole->count, from->row,
+                    count * sizeof *from->row);
+            memmove(whole->re + whole->count, from->re,
+                    count * sizeof *from->re);
+            if (whole->im)
+                memmove(whole->im + whole->count, from->im,
+                        count * sizeof *from->im);
+        }
+        whole->count += from->count;
+    }
 }
 
-/* Read the columns by several threads. @return false if one thread must read
- * them: the matrix is small, its end is not known, or the shares do not fit */
-static bool read_in_shares(const ritz_output4_reader *r,
-                           const ritz_output4_header *header, const char *end,
-                           ritz_output4_build *out)
+/* Read the columns by several threads. @param[out] found  false if one thread
+ * must read them: threads are not allowed, or the shares do not fit */
+static ritz_status read_in_shares(const ritz_output4_reader *r,
+                                  const ritz_output4_header *header,
+                                  const ritz_marks *marks, bool *found,
+                                  ritz_output4_build *out)
 {
-    const int threads =
-        ritz_team_ready(end ? (end - r->text.at) / SHARE_BYTES : 1);
-    RITZ_OWN(ritz_output4_shares) all = {.header = *header, .end = end};
-    int64_t total = 0;
+    const int threads = ritz_team_ready(marks ? marks->count : 1);
+    RITZ_OWN(ritz_output4_shares) all = {.marks = marks};
 
+    *found = false;
     if (threads < 2)
-        return false;
-    cut_shares(r, end, ritz_team_shares(threads), &all);
-    ritz_team_each(threads, all.count, read_share, &all);
+        return RITZ_OK;
+    RITZ_CHECK(begin_matrix(header, r->text.end - r->begin, &all.whole));
+    all.whole.wide = r->wide;
+    RITZ_CHECK(ritz_triplets_room(&all.whole.entries, marks->values));
+    for (int64_t k = 0; k < marks->count; k++)
+        begin_share(r, k, &all);
+    ritz_team_each(threads, marks->count, read_share, &all);
     if (!do_shares_join(&all))
-        return false;
-    for (int64_t k = 0; k < all.count; k++) {
-        all.share[k].offset = total;
-        total += all.share[k].build.entries.count;
-        all.share[0].build.sparse |= all.share[k].build.sparse;
-    }
-    if (ritz_triplets_reserve(&all.share[0].build.entries,
-                              total - all.share[0].build.entries.count) !=
-        RITZ_OK)
-        return false;
-    ritz_team_each(threads, all.count, join_share, &all);
-    all.share[0].build.entries.count = total;
-    RITZ_MOVE(*out, all.share[0].build);
-    return true;
+        return RITZ_OK;
+    close_gaps(&all, &all.whole.entries);
+    for (int64_t k = 0; k < marks->count; k++)
+        all.whole.sparse |= all.share[k].build.sparse;
+    *found = true;
+    RITZ_MOVE(*out, all.whole);
+    return RITZ_OK;
 }
 
 ritz_status ritz_output4_read_columns(ritz_output4_reader *r,
                                       const ritz_output4_header *header,
-                                      const char *end, ritz_output4_build *out)
+                                      const ritz_marks *marks,
+                                      ritz_output4_build *out)
 {
-    if (read_in_shares(r, header, end, out))
+    bool found = false;
+
+    RITZ_CHECK(read_in_shares(r, header, marks, &found, out));
+    if (found)
         return RITZ_OK;
     RITZ_CHECK(begin_matrix(header, r->text.end - r->begin, out));
     out->wide = r->wide;
-    RITZ_CHECK(ritz_triplets_reserve(&out->entries, most_entries(r, header)));
+    RITZ_CHECK(ritz_triplets_room(
+        &out->entries, marks ? marks->values : most_entries(r, header)));
     return read_until(r, out, NULL);
 }
 

@@ -371,15 +371,48 @@ static bool skip_column(ritz_output4_reader *t, const int64_t n[3])
     return true;
 }
 
-/* The first line that begins behind `from` and looks like the header of a
- * column: three integers and no decimal point. */
-static const char *find_text_column(const ritz_output4_reader *t,
-                                    const char *from)
+/* Move behind the lines of so many numbers: at once if the last of these lines
+ * ends where full lines of w letters a number would, else line by line. */
+static bool pass_numbers(ritz_output4_reader *t, int64_t reals)
 {
-    ritz_output4_reader ahead = *t;
+    ritz_lines *text = &t->text;
+    const int64_t lines = (reals + t->per_line - 1) / t->per_line;
+    int64_t size = 0;
 
-    ahead.text.at = from;
-    return take_line(&ahead) && skip_strings(&ahead) ? ahead.text.at : NULL;
+    if (reals > text->end - text->at)
+        return false;
+    size = reals * t->width + lines - 1;
+    if (text->end - text->at > size && text->at[size] == '\n') {
+        text->at += size + 1;
+        text->number += lines;
+        return true;
+    }
+    for (int64_t k = 0; k < lines; k++)
+        if (!take_line(t))
+            return false;
+    return true;
+}
+
+static int64_t count_lines(ritz_output4_reader *t,
+                           const ritz_output4_build *build, const int64_t n[3])
+{
+    const int64_t integers = ritz_output4_count_integers(build);
+    int64_t reals = 0;
+
+    if (n[1] != 0)
+        return pass_numbers(t, n[2]) ? n[2] / build->header.numbers : -1;
+    for (int64_t left = n[2]; left > 0;) {
+        ritz_output4_string string = {0};
+        int64_t header[2] = {0};
+
+        if (!take_line(t) || !take_integers(t, integers, header) ||
+            !ritz_output4_decode_string(build, header, left, &string) ||
+            !pass_numbers(t, string.reals))
+            return -1;
+        reals += string.reals;
+        left -= string.words;
+    }
+    return reals / build->header.numbers;
 }
 
 const ritz_output4_spelling ritz_output4_text = {
@@ -391,6 +424,6 @@ const ritz_output4_spelling ritz_output4_text = {
     .take_string = take_text_string,
     .read_numbers = read_text_numbers,
     .skip_column = skip_column,
-    .find_column = find_text_column,
+    .count_column = count_lines,
     .skip_last = skip_last,
 };

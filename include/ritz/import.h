@@ -40,6 +40,8 @@ typedef struct ritz_listed {
     int64_t at;   /* where it begins: byte of the file, or place among others */
     int64_t line; /* of that byte, where the format is text */
     char other[RITZ_NAME_SIZE]; /* as in ritz_matrix */
+    struct ritz_marks *marks;   /* places in a large matrix from which several
+                                   threads read on; NULL: there are none */
 } ritz_listed;
 
 typedef struct ritz_listing {
