@@ -9,6 +9,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <pthread.h>
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -216,20 +217,31 @@ void ritz_draft_hold(void)
     }
 }
 
+/* Add an input unless it is known. */
+static ritz_status add_input(const char *path, input *file)
+{
+    for (int64_t k = 0; k < held.num_inputs; k++)
+        if (same_file(&file->file, &held.input[k].file))
+            return RITZ_OK;
+    RITZ_CHECK_ROOM(held.input, held.num_inputs, held.inputs_room);
+    RITZ_CHECK_COPY(file->path, path, (int64_t)strlen(path) + 1);
+    held.input[held.num_inputs++] = *file;
+    return RITZ_OK;
+}
+
 ritz_status ritz_draft_protect(const char *path)
 {
+    static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
     input file = {0};
+    ritz_status status = RITZ_OK;
 
     if (!held.active || stat(path, &file.file) != 0 ||
         !S_ISREG(file.file.st_mode))
         return RITZ_OK;
-    for (int64_t k = 0; k < held.num_inputs; k++)
-        if (same_file(&file.file, &held.input[k].file))
-            return RITZ_OK;
-    RITZ_CHECK_ROOM(held.input, held.num_inputs, held.inputs_room);
-    RITZ_CHECK_COPY(file.path, path, (int64_t)strlen(path) + 1);
-    held.input[held.num_inputs++] = file;
-    return RITZ_OK;
+    pthread_mutex_lock(&lock); /* several threads may read files */
+    status = add_input(path, &file);
+    pthread_mutex_unlock(&lock);
+    return status;
 }
 
 ritz_status ritz_draft_check(const char *path)

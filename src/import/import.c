@@ -1,6 +1,7 @@
 /* ritz_import: read, name, place, and settle. */
 #include "import/import.h"
 #include "base/alloc.h"
+#include "base/team.h"
 #include "base/text.h"
 
 #include <inttypes.h>
@@ -31,6 +32,34 @@ static bool is_in_order(const ritz_part *part, const int64_t *stays)
     return true;
 }
 
+/* Whether entries are zero: each thread looks at some of them. */
+typedef struct zero_search {
+    const double *val;
+    bool found[RITZ_TEAM_SHARES]; /* by each thread */
+} zero_search;
+
+static void find_zero(int thread, int64_t from, int64_t to, void *task)
+{
+    zero_search *search = task;
+    bool found = false;
+
+    for (int64_t p = from; p < to; p++)
+        found = found || search->val[p] == 0.0;
+    search->found[thread] = found;
+}
+
+static bool has_zeros(const ritz_sparse *A)
+{
+    const int64_t nnz = A->colptr[A->ncol];
+    zero_search search = {.val = A->val};
+    bool found = false;
+
+    ritz_team_over(ritz_part_threads(A), nnz, find_zero, &search);
+    for (int k = 0; k < RITZ_TEAM_SHARES; k++)
+        found = found || search.found[k];
+    return found;
+}
+
 /* Whether the matrix of a part is that of the component as it is. */
 static bool is_complete(const ritz_part *part, const int64_t *stays, int64_t n)
 {
@@ -39,9 +68,7 @@ static bool is_complete(const ritz_part *part, const int64_t *stays, int64_t n)
 
     for (int64_t j = 0; j < A->ncol && whole; j++)
         whole = stays[part->place[j]] == j;
-    for (int64_t p = 0; whole && p < A->colptr[A->ncol]; p++)
-        whole = A->val[p] != 0.0;
-    return whole;
+    return whole && !has_zeros(A);
 }
 
 /* Remove the other rows and columns of such a part within its own arrays, which
@@ -396,18 +423,17 @@ static ritz_status settle_rows(const ritz_import_request *request,
 
 /* From matrices and a deck to a component without ports. */
 static ritz_status make_component(const ritz_import_request *request,
-                                  ritz_parts *parts, ritz_deck *deck,
-                                  ritz_io_files *files,
+                                  ritz_side_files *side, ritz_parts *parts,
+                                  ritz_deck *deck, ritz_io_files *files,
                                   ritz_component *component,
                                   ritz_import_report *report)
 {
     const ritz_grids *grids = &component->grids;
     RITZ_OWN(ritz_row_names) names = {0};
 
-    if (request->bulk)
-        RITZ_CHECK(ritz_deck_read(request->bulk, deck));
+    RITZ_CHECK(ritz_side_files_deck(side, deck));
     RITZ_REFUSE_IF(deck->imposed, RITZ_ERR_FORMAT, "%s", deck->imposed);
-    RITZ_CHECK(ritz_names_find(request, deck, parts, &names));
+    RITZ_CHECK(ritz_names_find(request, deck, side, parts, &names));
     RITZ_CHECK(ritz_io_files_name(request, &names, files));
     if (deck->num_constraints > 0 || request->num_rigid_ports > 0 ||
         request->num_averaged_ports > 0) {
@@ -441,10 +467,12 @@ ritz_status ritz_import(const ritz_import_request *request, ritz_component *out,
     RITZ_OWN(ritz_parts) parts = {0};
     RITZ_OWN(ritz_deck) deck = {0};
     RITZ_OWN(ritz_io_files) files = {0};
+    [[gnu::cleanup(ritz_side_files_end)]] ritz_side_files *side = NULL;
 
+    RITZ_CHECK(ritz_side_files_begin(request, &side));
     RITZ_CHECK(take_parts(request, &component, &parts, &files));
-    RITZ_CHECK(
-        make_component(request, &parts, &deck, &files, &component, &done_what));
+    RITZ_CHECK(make_component(request, side, &parts, &deck, &files, &component,
+                              &done_what));
     ritz_parts_free(&parts); /* the larger half of the memory, done with */
     RITZ_CHECK(
         ritz_import_attach(request, &deck, &done_what, &files, &component));

@@ -36,10 +36,28 @@ typedef struct ritz_row_names {
 /** Refuse a dof that does not exist, and name the nearest one. */
 ritz_status ritz_roster_miss(const ritz_roster *roster, ritz_dof dof);
 
+/* The deck and the file of names of a request. They are read by another thread
+ * while the matrices are read. */
+typedef struct ritz_side_files ritz_side_files;
+
+/** Begin to read them. @param[out] out  freed by ritz_side_files_end() */
+ritz_status ritz_side_files_begin(const ritz_import_request *request,
+                                  ritz_side_files **out);
+
+/** Wait until they are read, and take the deck, which is left empty without
+ * one. @return what reading it returned, with its sentence */
+ritz_status ritz_side_files_deck(ritz_side_files *side, ritz_deck *out);
+
+/** The same of the names. */
+ritz_status ritz_side_files_names(ritz_side_files *side, ritz_row_names *out);
+
+/** Wait until they are read, and free what was not taken; *side may be NULL. */
+void ritz_side_files_end(ritz_side_files **side);
+
 /** Name the rows of all parts, and give each part its places. */
 ritz_status ritz_names_find(const ritz_import_request *request,
-                            const ritz_deck *deck, ritz_parts *parts,
-                            ritz_row_names *out);
+                            const ritz_deck *deck, ritz_side_files *side,
+                            ritz_parts *parts, ritz_row_names *out);
 
 /** Names in a file of `GRID COMP` rows. */
 ritz_status ritz_names_of_file(const char *path, ritz_row_names *out);
@@ -48,6 +66,10 @@ void ritz_row_names_free(ritz_row_names *names);
 /** Parse directions, digits 1 to 6, each once, or a single 0, into flags @p
  * want. */
 ritz_status ritz_import_directions(const char *text, bool want[static 7]);
+
+/** Threads that gain from a pass over the entries; at most
+ * RITZ_TEAM_SHARES. */
+int ritz_part_threads(const ritz_sparse *A);
 
 /** Set @p bit of each row that has a non-zero entry. */
 void ritz_part_mark(const ritz_part *part, unsigned char bit,

@@ -1,5 +1,6 @@
 /* The dofs of the rows of all matrices, and rows found by dof. */
 #include "base/alloc.h"
+#include "base/team.h"
 #include "import/import.h"
 
 #include <inttypes.h>
@@ -247,6 +248,33 @@ static ritz_status list_deck_names(const ritz_deck *deck, int64_t n,
     return RITZ_OK;
 }
 
+/* Blanks, then a whole number without a sign, then a blank or the end. @return
+ * what follows the digits; NULL if that is not so */
+static const char *scan_number(const char *at, int64_t *out)
+{
+    enum { MOST = 15 };
+    const char *first = NULL;
+    int64_t value = 0;
+
+    while (*at == ' ' || *at == '\t')
+        at++;
+    for (first = at; *at >= '0' && *at <= '9' && at - first < MOST; at++)
+        value = 10 * value + (*at - '0');
+    *out = value;
+    return at > first && (!*at || strchr(" \t\r", *at)) ? at : NULL;
+}
+
+/* A line of two such numbers and nothing else, as nearly all lines are. @return
+ * false if it is another one */
+static bool scan_plain_line(const char *line, ritz_dof *out)
+{
+    const char *at = scan_number(line, &out->grid);
+
+    at = at ? scan_number(at, &out->component) : NULL;
+    return at && !at[strspn(at, " \t\r")] && out->grid > 0 &&
+           out->component <= 6;
+}
+
 /* `GRID COMP` of one line, which may be blank or end in a comment. */
 static ritz_status take_line(const char *path, int64_t number, char *line,
                              ritz_roster *named)
@@ -255,6 +283,10 @@ static ritz_status take_line(const char *path, int64_t number, char *line,
     ritz_dof dof = {0};
     int count = 0;
 
+    if (scan_plain_line(line, &dof)) {
+        named->place[named->count++] = (ritz_row_place){dof, number};
+        return RITZ_OK;
+    }
     line[strcspn(line, "#")] = '\0';
     count = sscanf(line, "%47s%47s%1s", field[0], field[1], more);
     if (count < 1)
@@ -434,12 +466,12 @@ static ritz_status unite_rows(const ritz_parts *parts, ritz_row_names *out)
 }
 
 /* Rows that --dofs names: files that name theirs otherwise must agree. */
-static ritz_status name_by_file(const char *path, ritz_parts *parts,
-                                ritz_row_names *out)
+static ritz_status name_by_file(const char *path, ritz_side_files *side,
+                                ritz_parts *parts, ritz_row_names *out)
 {
     const ritz_part *first = NULL;
 
-    RITZ_CHECK(ritz_names_of_file(path, out));
+    RITZ_CHECK(ritz_side_files_names(side, out));
     for (int64_t k = 0; k < parts->count; k++) {
         const ritz_part *part = &parts->part[k];
         int64_t n = part->matrix.A.nrow;
@@ -480,15 +512,15 @@ static ritz_status place_rows(ritz_part *part, const ritz_row_names *names,
 }
 
 static ritz_status choose_names(const ritz_import_request *request,
-                                const ritz_deck *deck, ritz_parts *parts,
-                                ritz_row_names *out)
+                                const ritz_deck *deck, ritz_side_files *side,
+                                ritz_parts *parts, ritz_row_names *out)
 {
     const ritz_part *unnamed = first_unnamed(parts);
     int64_t n = unnamed ? unnamed->matrix.A.nrow : 0;
 
     RITZ_CHECK_IN("--rows", check_rows(request, unnamed));
     if (request->dofs)
-        RITZ_CHECK(name_by_file(request->dofs, parts, out));
+        RITZ_CHECK(name_by_file(request->dofs, side, parts, out));
     else if (!unnamed)
         RITZ_CHECK(unite_rows(parts, out));
     else if (request->bulk)
@@ -504,8 +536,8 @@ static ritz_status choose_names(const ritz_import_request *request,
 }
 
 ritz_status ritz_names_find(const ritz_import_request *request,
-                            const ritz_deck *deck, ritz_parts *parts,
-                            ritz_row_names *out)
+                            const ritz_deck *deck, ritz_side_files *side,
+                            ritz_parts *parts, ritz_row_names *out)
 {
     RITZ_OWN(ritz_row_names) names = {0};
     RITZ_OWN(ritz_roster) roster = {0};
@@ -519,7 +551,7 @@ ritz_status ritz_names_find(const ritz_import_request *request,
             "'%s' has %" PRId64 " rows, '%s' has %" PRId64, parts->part[k].spec,
             one->A.nrow, unnamed->spec, unnamed->matrix.A.nrow);
     }
-    RITZ_CHECK(choose_names(request, deck, parts, &names));
+    RITZ_CHECK(choose_names(request, deck, side, parts, &names));
     RITZ_CHECK(ritz_roster_new(names.count, names.dof, &roster));
     for (int64_t k = 0; k < parts->count; k++) {
         ritz_part *part = &parts->part[k];
@@ -531,17 +563,45 @@ ritz_status ritz_names_find(const ritz_import_request *request,
     return RITZ_OK;
 }
 
+int ritz_part_threads(const ritz_sparse *A)
+{
+    enum { ENTRIES = 1 << 18 }; /* a fraction of a millisecond */
+    const int64_t gain = A->colptr[A->ncol] / ENTRIES;
+
+    return ritz_team_ready(gain < RITZ_TEAM_SHARES ? gain : RITZ_TEAM_SHARES);
+}
+
+/* Rows with an entry on the diagonal: each thread marks some of them. */
+typedef struct marking {
+    const ritz_part *part;
+    unsigned char bit;
+    unsigned char *mark;
+    int64_t marked[RITZ_TEAM_SHARES]; /* by each thread */
+} marking;
+
+static void mark_diagonal(int thread, int64_t from, int64_t to, void *task)
+{
+    marking *all = task;
+    int64_t marked = 0;
+
+    for (int64_t j = from; j < to; j++)
+        if (ritz_sparse_diagonal(&all->part->matrix.A, j) != 0.0) {
+            all->mark[all->part->place[j]] |= all->bit;
+            marked++;
+        }
+    all->marked[thread] = marked;
+}
+
 void ritz_part_mark(const ritz_part *part, unsigned char bit,
                     unsigned char *mark)
 {
     const ritz_sparse *A = &part->matrix.A;
+    marking all = {.part = part, .bit = bit, .mark = mark};
     int64_t marked = 0;
 
-    for (int64_t j = 0; j < A->ncol; j++)
-        if (ritz_sparse_diagonal(A, j) != 0.0) {
-            mark[part->place[j]] |= bit;
-            marked++;
-        }
+    ritz_team_over(ritz_part_threads(A), A->ncol, mark_diagonal, &all);
+    for (int k = 0; k < RITZ_TEAM_SHARES; k++)
+        marked += all.marked[k];
     if (marked == A->ncol) /* the usual case: there is no row left */
         return;
     for (int64_t j = 0; j < A->ncol; j++)
