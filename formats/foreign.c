@@ -2,6 +2,8 @@
  * of them. */
 #include "base/alloc.h"
 #include "base/bytes.h"
+#include "base/draft.h"
+#include "base/mapped.h"
 #include "base/text.h"
 #include "formats/matrix.h"
 
@@ -14,18 +16,39 @@
 #include <strings.h>
 #include <sys/stat.h>
 
+static const ritz_format *recognise_format(const char *bytes, int64_t size)
+{
+    for (int k = 0; ritz_formats[k]; k++)
+        if (ritz_formats[k]->recognise(bytes, size))
+            return ritz_formats[k];
+    return NULL;
+}
+
+/* Map a file whose format allows that; others are copied. */
+static ritz_status read_file(const char *path, ritz_foreign *file)
+{
+    RITZ_CHECK(ritz_mapped_new(path, &file->mapped));
+    if (file->mapped) {
+        file->bytes = ritz_mapped_bytes(file->mapped, &file->size);
+        file->format = recognise_format(file->bytes, file->size);
+        if (file->format && file->format->maps)
+            return ritz_draft_protect(path);
+        ritz_mapped_free(&file->mapped);
+    }
+    RITZ_CHECK(ritz_bytes_read(path, &file->size, &file->owned));
+    file->bytes = file->owned;
+    file->format = recognise_format(file->bytes, file->size);
+    return RITZ_OK;
+}
+
 ritz_status ritz_foreign_open(const char *path, ritz_foreign *out)
 {
     RITZ_OWN(ritz_foreign) file = {0};
 
-    RITZ_CHECK(ritz_bytes_read(path, &file.size, &file.owned));
+    RITZ_CHECK(read_file(path, &file));
     RITZ_CHECK(ritz_path_folder(path, &file.folder));
     RITZ_CHECK_COPY(file.path, path, (int64_t)strlen(path) + 1);
-    file.bytes = file.owned;
     RITZ_CHECK(ritz_digest_begin(file.bytes, file.size, &file.summing));
-    for (int k = 0; ritz_formats[k] && !file.format; k++)
-        if (ritz_formats[k]->recognise(file.bytes, file.size))
-            file.format = ritz_formats[k];
     if (file.format && file.format->admit)
         RITZ_CHECK(ritz_foreign_context(
             &file, file.format->admit(file.bytes, file.size)));
@@ -37,6 +60,14 @@ const char *ritz_foreign_digest(ritz_foreign *file)
 {
     ritz_digest_end(&file->summing, file->digest);
     return file->digest;
+}
+
+/* What reading returned, unless the file was changed in the meantime. */
+static ritz_status check_change(const ritz_foreign *file, ritz_status status)
+{
+    RITZ_REFUSE_IF(file->mapped && ritz_mapped_changed(file->mapped),
+                   RITZ_ERR_FILE, "was changed while it was read");
+    return status;
 }
 
 ritz_status ritz_foreign_list(ritz_foreign *file)
@@ -54,13 +85,14 @@ ritz_status ritz_foreign_list(ritz_foreign *file)
                    "holds no matrix in a format that is known: %s", known);
     if (file->listing.count > 0) /* it is there already */
         return RITZ_OK;
-    return file->format->list(file, &file->listing);
+    return check_change(file, file->format->list(file, &file->listing));
 }
 
 ritz_status ritz_foreign_take(const ritz_foreign *file, int64_t k,
                               ritz_matrix *out)
 {
-    return file->format->read(file, &file->listing.item[k], out);
+    return check_change(file,
+                        file->format->read(file, &file->listing.item[k], out));
 }
 
 /* A long path is cut to what leaves room for the rest of a sentence. */
@@ -80,6 +112,7 @@ void ritz_foreign_free(ritz_foreign *file)
 {
     ritz_digest_end(&file->summing, NULL);
     ritz_listing_clear(&file->listing);
+    ritz_mapped_free(&file->mapped);
     RITZ_FREE(file->path, file->folder, file->owned, file->listing.item);
     *file = (ritz_foreign){0};
 }
@@ -303,8 +336,10 @@ static ritz_status take_of_file(int64_t k, int64_t count,
         RITZ_CHECK(add_context(
             wanted[k].what, take_named(&file, wanted[k].spec, wanted[k].into)));
     }
-    return sums ? ritz_file_sums_add(sums, path, ritz_foreign_digest(&file))
-                : RITZ_OK;
+    if (!sums)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_file_sums_add(sums, path, ritz_foreign_digest(&file)));
+    return ritz_foreign_context(&file, check_change(&file, RITZ_OK));
 }
 
 ritz_status ritz_foreign_collect(int64_t count, const ritz_wanted *wanted,

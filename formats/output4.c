@@ -231,6 +231,7 @@ const ritz_format ritz_format_output4 = {
     .summary = "NASTRAN OUTPUT4, text or binary, dense or sparse",
     .reference = "MSC2014",
     .recognise = is_output4,
+    .maps = true,
     .list = list_file,
     .read = read_matrix,
 };

@@ -60,7 +60,8 @@ typedef struct ritz_foreign {
     struct ritz_digest_work *summing; /* its computation, until then */
     const struct ritz_format *format; /* NULL: none knows it */
     ritz_listing listing;
-    char *owned; /* the bytes of a file */
+    char *owned;                /* the bytes of a file that was copied */
+    struct ritz_mapped *mapped; /* or those of a file that is mapped */
 } ritz_foreign;
 
 typedef struct ritz_format {
@@ -73,6 +74,9 @@ typedef struct ritz_format {
      * parses: whether that library may have these bytes (ritz_container_guard).
      * NULL: no other library gets them. */
     ritz_status (*admit)(const char *bytes, int64_t size);
+    /** Whether a large file may be mapped: list() and read() rely neither on a
+     * NUL behind the bytes nor on bytes being the same when read again. */
+    bool maps;
     /**
      * Append what the file holds, without its values where the format allows
      * that. @return RITZ_ERR_FORMAT naming line or byte
@@ -110,7 +114,8 @@ const ritz_unread *ritz_unread_find(const char *bytes, int64_t size);
 ritz_status ritz_unread_refuse(const char *bytes, int64_t size);
 
 /**
- * Read a file into memory and recognise its format by content. Another thread
+ * Read a file into memory, or map it, and recognise its format by content.
+ * Another thread
  * starts to compute the SHA-256 of a file of 4 MiB or more if
  * ritz_set_threads() allows two; a smaller file's is computed at once.
  *
@@ -124,10 +129,11 @@ ritz_status ritz_foreign_open(const char *path, ritz_foreign *out);
  * Waits until they are computed. */
 const char *ritz_foreign_digest(ritz_foreign *file);
 
-/** Fill the directory; @return RITZ_ERR_FORMAT if no format knows the file. */
+/** Fill the directory; @return RITZ_ERR_FORMAT if no format knows the file,
+ * RITZ_ERR_FILE if it was mapped and was changed since. */
 ritz_status ritz_foreign_list(ritz_foreign *file);
 
-/** Read matrix @p k of the directory. */
+/** Read matrix @p k of the directory. @return as ritz_foreign_list() */
 ritz_status ritz_foreign_take(const ritz_foreign *file, int64_t k,
                               ritz_matrix *out);
 

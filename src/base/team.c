@@ -195,6 +195,7 @@ bool ritz_team_start(void *(*run)(void *argument), void *argument,
     bool started = false;
 
     sigfillset(&all);
+    sigdelset(&all, SIGBUS); /* of the thread that reads a map: see mapped.h */
     if (pthread_sigmask(SIG_SETMASK, &all, &before) != 0)
         return false;
     started = pthread_create(out, NULL, run, argument) == 0;

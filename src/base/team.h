@@ -78,8 +78,8 @@ int ritz_team_ready(int64_t gain);
 int64_t ritz_team_shares(int threads);
 
 /**
- * Start a thread outside the team that blocks all signals, so that they are
- * handled by the threads of the program that uses this library.
+ * Start a thread outside the team that blocks all signals but SIGBUS, so that
+ * they are handled by the threads of the program that uses this library.
  *
  * @param[out] out  to be joined or detached; undefined if false is returned
  * @return false if the system starts no more threads

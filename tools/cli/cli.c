@@ -1,6 +1,7 @@
 #include "cli/cli.h"
 
 #include "base/draft.h"
+#include "base/mapped.h"
 
 #include <ritz/base.h>
 
@@ -492,5 +493,6 @@ void cli_parse(const cli_program *program, const cli_option *options, int argc,
     gather_outputs(run, all);
     ritz_draft_hold();
     cli_watch(run);
+    ritz_map_files(); /* after it, whose handler ends the program */
     run->began = cli_clock();
 }
