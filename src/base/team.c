@@ -137,6 +137,9 @@ void ritz_team_meet(int threads)
     announce_change(&team.meetings);
 }
 
+/* Whether the thread works on a task of the team. */
+static _Thread_local bool works;
+
 /* OpenMP keeps this number for each thread by itself: a BLAS that the caller has
    set to one thread would start several in the threads of the team, and its sums
    would depend on which thread works on an item. */
@@ -152,6 +155,7 @@ static void *serve_tasks(void *argument)
 {
     const int thread = (int)(intptr_t)argument;
 
+    works = true;
     ritz_team_member();
     for (uint32_t seen = team.before[thread];; seen++) {
         await_change(&team.tasks, seen);
@@ -230,7 +234,7 @@ int ritz_team_ready(int64_t gain)
     const int most = gain < limit ? (int)gain : limit;
     int ready = 0;
 
-    if (gain <= 1 || most <= 1)
+    if (gain <= 1 || most <= 1 || works)
         return 1;
     pthread_mutex_lock(&team.busy);
     while (team.started + 1 < most && !team.refused) {
@@ -259,7 +263,9 @@ void ritz_team_run(int threads, ritz_team_work *work, void *task)
     team.task = task;
     atomic_store(&team.working, team.started);
     announce_change(&team.tasks);
+    works = true;
     work(0, threads, task);
+    works = false;
     await_change(&team.ends, ended);
     pthread_mutex_unlock(&team.busy);
 }

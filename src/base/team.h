@@ -34,7 +34,8 @@ typedef void ritz_team_item(int64_t k, void *task);
  * ended. The caller is thread 0. If several threads of a program call this
  * function, their tasks run one after the other.
  *
- * @p work must not call this function or one of those that are built on it.
+ * @p work must not call this function or one of those that are built on it with
+ * more threads than ritz_team_ready() allows there, which is one.
  *
  * @param[in] threads  at most what ritz_team_ready() returned; with 1, @p work
  *                     runs in the calling thread and no lock is taken
@@ -64,7 +65,7 @@ void ritz_team_meet(int threads);
 /**
  * How many threads a task is to use, at least 1: @p gain, unless
  * ritz_set_threads() allows fewer or the system refuses to start so many.
- * Starts those that are missing.
+ * Starts those that are missing. In a task of the team it is 1.
  *
  * @param[in] gain  threads from which the task gains, by its size; any number
  */

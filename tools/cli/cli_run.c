@@ -93,7 +93,7 @@ static void limit_threads(cli_run *run, const struct stat *file)
     run->piped = run->piped || !S_ISREG(file->st_mode);
     run->bytes += S_ISREG(file->st_mode) ? file->st_size : 0;
     openblas_set_num_threads(run->bytes < LARGE ? 1 : allowed_threads());
-    ritz_set_threads(run->bytes < LARGE ? 1 : allowed_threads());
+    ritz_set_threads(allowed_threads());
     if (!run->program->threads || run->bytes < LARGE || run->piped ||
         json_array_size(run->warnings) > 0 || getenv("OMP_THREAD_LIMIT"))
         return;

@@ -189,6 +189,27 @@ static void every_item_is_worked_on_once(void **state)
     ritz_set_threads(1);
 }
 
+static void ask_for_more(int64_t k, void *task)
+{
+    int *ready = task;
+
+    ready[k] = ritz_team_ready(MOST);
+}
+
+/* So that what a task calls may ask for threads too. */
+static void within_a_task_one_thread_is_ready(void **state)
+{
+    int ready[MOST * MOST] = {0};
+
+    (void)state;
+    ritz_set_threads(MOST);
+    ritz_team_each(ritz_team_ready(MOST), MOST * MOST, ask_for_more, ready);
+    for (int k = 0; k < MOST * MOST; k++)
+        assert_int_equal(ready[k], 1);
+    assert_int_equal(ritz_team_ready(MOST), MOST);
+    ritz_set_threads(1);
+}
+
 static void a_file_has_four_shares_for_each_thread(void **state)
 {
     (void)state;
@@ -225,6 +246,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_forked_process_starts_threads_of_its_own),
     cmocka_unit_test(parts_cover_every_item_once),
     cmocka_unit_test(every_item_is_worked_on_once),
+    cmocka_unit_test(within_a_task_one_thread_is_ready),
     cmocka_unit_test(a_file_has_four_shares_for_each_thread),
     cmocka_unit_test(a_thread_outside_the_team_blocks_signals),
 };
