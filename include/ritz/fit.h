@@ -74,7 +74,9 @@ typedef struct ritz_fit_request {
     bool estimates;        /* find bounds of the result and the runner-up, and
                               do not measure candidates of a scene that a lower
                               bound rules out */
-    bool costs;            /* of feasible ones, measured: some 20 ms each */
+    bool costs;            /* of every method's best or, with an observer or
+                              `thorough`, of all that are feasible; measured,
+                              some 2 ms each */
     bool thorough;         /* every method to its end, not only as far as twice
                             the best of others */
     int64_t most_full;     /* dofs up to which a scene's full system is the

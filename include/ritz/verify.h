@@ -254,17 +254,27 @@ const ritz_pairs *ritz_reference_pairs(const ritz_reference *reference);
 ritz_status ritz_reference_parts(const ritz_reference *reference,
                                  const ritz_dense *T, ritz_dense *out);
 
+/* What is known of a reduced model besides its matrices, and what a comparison
+   finds of it on the way. */
+typedef struct ritz_compared {
+    const ritz_dense *parts; /* borrowed, by ritz_reference_parts, with as many
+                                columns as T; NULL: shapes are compared by T */
+    bool keeps_modes;        /* `modes` are wanted */
+    ritz_pairs modes;        /* out: all modes, without residuals */
+    bool passive; /* out: M, K and the damping are such that nothing can grow;
+                     false: not known, because the model has a matrix D */
+} ritz_compared;
+
 /**
- * As ritz_reference_measure, for a reduced component whose T may be missing:
- * shapes are compared by @p parts, which has as many columns as T.
+ * As ritz_reference_measure, for a reduced component whose T may be missing.
  *
- * @param[in] parts  by ritz_reference_parts; NULL: as ritz_reference_measure
+ * @param[in,out] compared  NULL: as ritz_reference_measure
  * @cost   does not grow with the size of the full model, unless each of its
  *         responses takes a factor: see ritz_reference_new
  */
 ritz_status ritz_reference_measure_parts(const ritz_reference *reference,
                                          ritz_model reduced,
-                                         const ritz_dense *parts,
+                                         ritz_compared *compared,
                                          const ritz_verify_request *limits,
                                          int where, ritz_measures *out);
 

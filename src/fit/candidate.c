@@ -220,14 +220,15 @@ static ritz_status join_bodies(ritz_fitter *f, ritz_fit_candidate *candidate,
 typedef struct ritz_fit_model {
     const ritz_fit_place *place;
     const ritz_stage *stage;
-    const ritz_dense *parts; /* of a component, Phi'M T; NULL: not known */
-    ritz_configuration at;   /* of a scene */
-    ritz_reduced lent;       /* its matrices, and T of a component; borrowed */
+    ritz_compared compared; /* of a component: Phi'M T, if it is known */
+    ritz_configuration at;  /* of a scene */
+    ritz_reduced lent;      /* its matrices, and T of a component; borrowed */
 } ritz_fit_model;
 
 static void ritz_fit_model_free(ritz_fit_model *m)
 {
     ritz_configuration_free(&m->at);
+    ritz_pairs_free(&m->compared.modes);
 }
 
 static ritz_status open_model(const ritz_fitter *f, const ritz_stage *stage,
@@ -268,8 +269,8 @@ static ritz_status check_stability(const ritz_fitter *f,
 }
 
 /* Its errors there are among the worst so far. */
-static ritz_status measure_model(ritz_fitter *f, const ritz_fit_model *m,
-                                 int points, ritz_fit_candidate *candidate)
+static ritz_status measure_model(ritz_fitter *f, ritz_fit_model *m, int points,
+                                 ritz_fit_candidate *candidate)
 {
     const ritz_verify_request *limits = &f->request.tolerance;
     const ritz_reference *reference = m->place->reference;
@@ -279,10 +280,11 @@ static ritz_status measure_model(ritz_fitter *f, const ritz_fit_model *m,
         reference,
         f->scene ? ritz_model_of_configuration(&m->at, NULL)
                  : ritz_model_of_reduced(&m->lent, NULL),
-        m->parts, limits, points, &found));
+        &m->compared, limits, points, &found));
     RITZ_CHECK(ritz_fit_worst(&found, m->place->at, &candidate->errors));
     ritz_fit_judge(limits, candidate);
-    if (candidate->feasible && points & ~RITZ_ONLY_LIMITED)
+    if (candidate->feasible && points & ~RITZ_ONLY_LIMITED &&
+        !m->compared.passive)
         RITZ_CHECK(check_stability(f, m, candidate));
     return RITZ_OK;
 }
@@ -407,7 +409,8 @@ ritz_status ritz_fit_measure_at(ritz_fitter *f, const ritz_fit_joined *joined,
 {
     [[maybe_unused]] RITZ_OWN(ritz_blas_single) single = ritz_blas_single_new();
     RITZ_OWN(ritz_fit_model)
-    m = {.parts = joined->parts.ncol > 0 ? &joined->parts : NULL};
+    m = {.compared = {.parts = joined->parts.ncol > 0 ? &joined->parts : NULL,
+                      .keeps_modes = joined->modes}};
 
     RITZ_CHECK(open_model(f, &joined->stage, place, &m));
     if (m.lent.K.ncol > candidate->order)
@@ -418,13 +421,16 @@ ritz_status ritz_fit_measure_at(ritz_fitter *f, const ritz_fit_joined *joined,
                    candidate->order, f->largest);
     if (bounds)
         RITZ_CHECK(rule_out(f, &m, candidate));
-    return candidate->ruled_out ? RITZ_OK
-                                : measure_model(f, &m, points, candidate);
+    if (candidate->ruled_out)
+        return RITZ_OK;
+    RITZ_CHECK(measure_model(f, &m, points, candidate));
+    if (joined->modes)
+        RITZ_MOVE(*joined->modes, m.compared.modes);
+    return RITZ_OK;
 }
 
-/* The cost of simulation at the first place; there may be none. */
-static ritz_status take_cost(const ritz_fitter *f, const ritz_stage *stage,
-                             ritz_fit_candidate *candidate)
+ritz_status ritz_fit_take_cost(const ritz_fitter *f, const ritz_stage *stage,
+                               ritz_fit_candidate *candidate)
 {
     const ritz_verify_request *limits = &f->request.tolerance;
     RITZ_OWN(ritz_fit_model) m = {0};
@@ -468,6 +474,18 @@ static ritz_status meet_grid(ritz_fitter *f, const ritz_fit_joined *joined,
     return RITZ_OK;
 }
 
+/* Whether the cost of a candidate is measured as soon as it is feasible: more
+   than the best of each method is told, or its bodies could not be had again
+   without a new basis. */
+static bool costs_at_once(const ritz_fitter *f,
+                          const ritz_fit_candidate *candidate)
+{
+    const ritz_method *method = candidate->method;
+
+    return f->request.costs && (f->request.observe || f->request.thorough ||
+                                !(method->nested || method->narrow));
+}
+
 ritz_status ritz_fit_measure(ritz_fitter *f, const ritz_fit_joined *joined,
                              ritz_fit_candidate *candidate)
 {
@@ -483,8 +501,8 @@ ritz_status ritz_fit_measure(ritz_fitter *f, const ritz_fit_joined *joined,
                                        candidate));
     candidate->unconfirmed =
         !candidate->feasible && candidate->refusal[0] == '\0';
-    return candidate->feasible && f->request.costs
-               ? take_cost(f, &joined->stage, candidate)
+    return candidate->feasible && costs_at_once(f, candidate)
+               ? ritz_fit_take_cost(f, &joined->stage, candidate)
                : RITZ_OK;
 }
 

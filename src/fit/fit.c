@@ -349,6 +349,16 @@ static void explain_choice(const ritz_fitter *fitter, ritz_fit *fit)
 
 /* --- the search ----------------------------------------------------------- */
 
+/* Costs of the best of each method, of an interrupted search of the result. */
+static ritz_status find_costs(ritz_fitter *fitter, ritz_fit *fit)
+{
+    for (int64_t m = 0; m < fit->num_methods && fitter->request.costs; m++)
+        if (fit->best[m] >= 0 &&
+            (!fit->interrupted || fit->best[m] == fit->chosen))
+            RITZ_CHECK(ritz_fit_cost(fitter, &fit->candidate[fit->best[m]]));
+    return RITZ_OK;
+}
+
 static ritz_status search_methods(ritz_fitter *fitter, ritz_fit *fit)
 {
     for (int64_t m = 0; m < fit->num_methods; m++)
@@ -384,6 +394,7 @@ ritz_status ritz_fitter_search(ritz_fitter *fitter, ritz_fit *out)
         ritz_fit_conclude(&fit, m);
     if (fit.interrupted)
         choose_best(&fit);
+    RITZ_CHECK(find_costs(fitter, &fit));
     explain_choice(fitter, &fit);
     RITZ_MOVE(*out, fit);
     return RITZ_OK;

@@ -80,9 +80,11 @@ typedef struct ritz_fit_second {
 /* Bodies joined: the stage borrows all of them. */
 typedef struct ritz_fit_joined {
     ritz_stage stage;
-    ritz_bodies own;  /* flexible ones that were made for this stage alone */
-    ritz_dense parts; /* of a component: Phi'M T, by which shapes are compared;
+    ritz_bodies own;   /* flexible ones that were made for this stage alone */
+    ritz_dense parts;  /* of a component: Phi'M T, by which shapes are compared;
                          {0}: by T */
+    ritz_pairs *modes; /* of a component: gets its modes when it is measured;
+                          NULL: not wanted */
 } ritz_fit_joined;
 
 struct ritz_fitter {
@@ -293,6 +295,12 @@ ritz_status ritz_fit_measure_at(ritz_fitter *fitter,
 ritz_status ritz_fit_measure(ritz_fitter *fitter, const ritz_fit_joined *joined,
                              ritz_fit_candidate *candidate);
 
+/** The cost of simulating joined bodies at the first place; there may be none.
+ */
+ritz_status ritz_fit_take_cost(const ritz_fitter *fitter,
+                               const ritz_stage *stage,
+                               ritz_fit_candidate *candidate);
+
 /** Replace a candidate's estimates by bounds of its joined bodies, the worst of
  * all places. */
 ritz_status ritz_fit_bound_stage(ritz_fitter *fitter, const ritz_stage *stage,
@@ -339,6 +347,9 @@ void ritz_fit_ordered_free(ritz_fit_ordered *ordered);
 ritz_status ritz_fit_make_bodies(ritz_fitter *fitter,
                                  const ritz_fit_candidate *candidate,
                                  bool proven, ritz_bodies *out);
+
+/** Measure the cost of a feasible candidate, unless it was measured. */
+ritz_status ritz_fit_cost(ritz_fitter *fitter, ritz_fit_candidate *candidate);
 
 /** Find the bounds of a candidate that was tried, the worst of all places. */
 ritz_status ritz_fit_bound(ritz_fitter *fitter, ritz_fit_candidate *candidate);

@@ -5,10 +5,10 @@
  * comes first. Every body so gets an order of its own, and all of them together
  * a path of models, each with one column less than the one before.
  */
-#include "fit/fitter.h"
+#include "fit/nesting.h"
 
 #include "base/alloc.h"
-#include "base/tolerances.h"
+#include "base/team.h"
 #include "linear/blas_threads.h"
 
 #include <ritz/base.h>
@@ -20,105 +20,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Entries of a component's T above which columns stay as they were made. */
-static const int64_t most_entries = 4000000;
 /* Cuts of a component that fail one after the other, before the rest of its
    path is given up when columns are to be left out. */
 enum { COMPONENT_PATIENCE = 2 };
-/* Columns that are tried at each step: those that matter least alone. */
-enum { TRIED = 6 };
-
-typedef struct nesting {
-    ritz_fitter *f;
-    ritz_bodies whole;    /* flexible bodies with all their columns */
-    ritz_dense parts;     /* of a component: Phi'M T of all columns */
-    int64_t *first;       /* num_bodies + 1: its first column of all */
-    int64_t count, fixed; /* columns; those that must stay, first */
-    int64_t *column;      /* count, what matters most first */
-    double *alone;        /* of each column: the ratio without it */
-    int64_t *own, *some;  /* to work in: columns of one body, and of all */
-    int64_t every;        /* of listed places the first, and each every-th */
-    int64_t step;         /* columns between two cuts that are measured */
-    int64_t hardest;      /* the place where the last model was worst */
-    int only;             /* RITZ_ONLY_LIMITED: only those errors of cuts are
-                             measured that have a limit; 0: all errors */
-} nesting;
-
-static void nesting_free(nesting *n)
-{
-    ritz_bodies_free(&n->whole);
-    ritz_dense_free(&n->parts);
-    RITZ_FREE(n->first, n->column, n->alone, n->own, n->some);
-}
 
 /* --- the model of some columns -------------------------------------------- */
 
-/* The columns of body k among some, as the body numbers them, into `own`. */
-static int64_t take_own(const nesting *n, int64_t k, int64_t count,
-                        const int64_t *column)
-{
-    int64_t found = 0;
-
-    for (int64_t j = 0; j < count; j++)
-        if (column[j] >= n->first[k] && column[j] < n->first[k + 1])
-            n->own[found++] = column[j] - n->first[k];
-    return found;
-}
-
-/* The model of some columns. It needs no invariants and no T: shapes of a
-   component are compared by `parts`. */
-static ritz_status join_columns(const nesting *n, int64_t count,
-                                const int64_t *column, ritz_fit_joined *out)
-{
-    RITZ_CHECK(ritz_bodies_new(n->f->num_bodies, &out->own));
-    for (int64_t k = 0; k < n->f->num_bodies; k++) {
-        ritz_reduced bare = n->whole.item[k]; /* borrowed */
-
-        bare.T = (ritz_dense){0};
-        bare.invariants = (ritz_invariants){0};
-        RITZ_CHECK(ritz_reduced_nest(&bare, take_own(n, k, count, column),
-                                     n->own, 1, &out->own.item[k]));
-    }
-    if (!n->f->scene)
-        RITZ_CHECK(ritz_dense_pick(&n->parts, count, column, &out->parts));
-    return ritz_fit_join_own(n->f, out);
-}
-
-/*
- * Worst error over tolerance of the model of some columns, on the grid of the
- * listed places. It begins where the last model was worst: a ratio of `most` or
- * more is not measured at the other places.
- */
-static ritz_status measure_ratio(nesting *n, int64_t count,
-                                 const int64_t *column, double most,
-                                 double *out)
-{
-    const int64_t places = (n->f->num_listed + n->every - 1) / n->every;
-    const int64_t from = n->hardest;
-    RITZ_OWN(ritz_fit_candidate) judged = {0};
-    RITZ_OWN(ritz_fit_joined) joined = {0};
-    ritz_status status = RITZ_OK;
-
-    RITZ_CHECK(ritz_fit_go_on(n->f));
-    status = join_columns(n, count, column, &joined);
-    for (int64_t t = 0;
-         status == RITZ_OK && t < places && (t == 0 || judged.ratio < most);
-         t++) {
-        const int64_t k = (from + t) % places;
-        const double before = judged.ratio;
-
-        status = ritz_fit_measure_at(n->f, &joined, &n->f->place[k * n->every],
-                                     RITZ_ONLY_LIMITED, false, &judged);
-        if (status == RITZ_OK && judged.ratio > before)
-            n->hardest = k;
-    }
-    RITZ_CHECK(ritz_fit_refuse(status, &judged));
-    *out = judged.ratio;
-    return RITZ_OK;
-}
-
 /* At all places, or at the listed ones on the grid if @p points is 0. */
-static ritz_status measure_places(const nesting *n,
+static ritz_status measure_places(const ritz_nesting *n,
                                   const ritz_fit_joined *joined, int points,
                                   ritz_fit_candidate *out)
 {
@@ -132,12 +41,12 @@ static ritz_status measure_places(const nesting *n,
 }
 
 /* The model of some columns at all places, where candidates are confirmed. */
-static ritz_status judge_columns(const nesting *n, int64_t count,
+static ritz_status judge_columns(const ritz_nesting *n, int64_t count,
                                  const int64_t *column, ritz_fit_candidate *out)
 {
     const ritz_reference *reference = n->f->place[0].reference;
     RITZ_OWN(ritz_fit_joined) joined = {0};
-    ritz_status status = join_columns(n, count, column, &joined);
+    ritz_status status = ritz_nesting_join(n, count, column, &joined);
     int points = ritz_fit_points(reference, &out->errors);
 
     if (status == RITZ_OK && !(points & RITZ_AT_OTHER_POLES)) {
@@ -153,204 +62,101 @@ static ritz_status judge_columns(const nesting *n, int64_t count,
     return RITZ_OK;
 }
 
-/* --- the order ------------------------------------------------------------ */
-
-/* ceil(count / most) = k: one in k is measured; 1 if `most` is no limit. */
-static int64_t divide_work(int64_t count, int64_t most)
-{
-    return count > most && most > 0 ? (count + most - 1) / most : 1;
-}
-
-/*
- * Columns as they were made, but those that must stay first. Where columns or
- * places are many, some of them speak for all: of c columns that may go, c
- * models alone and some 2 c cuts are measured at places.
- */
-static ritz_status begin_nesting(ritz_fitter *f, nesting *n)
-{
-    RITZ_OWN_ARRAY ritz_column_kind *kind = NULL;
-    const int64_t most = f->request.most_measured;
-
-    n->f = f;
-    RITZ_CHECK_NEW(n->first, f->num_bodies + 1);
-    for (int64_t k = 0; k < f->num_bodies; k++)
-        n->first[k + 1] = n->count += n->whole.item[k].K.ncol;
-    RITZ_CHECK_NEW(n->column, n->count);
-    RITZ_CHECK_NEW(n->alone, n->count);
-    RITZ_CHECK_NEW(n->own, n->count);
-    RITZ_CHECK_NEW(n->some, n->count);
-    RITZ_CHECK_NEW(kind, n->count);
-    if (!f->scene)
-        RITZ_CHECK(ritz_reference_parts(f->place[0].reference,
-                                        &n->whole.item[0].T, &n->parts));
-    for (int64_t k = 0; k < f->num_bodies; k++)
-        RITZ_CHECK(ritz_fit_kinds(&n->whole.item[k], kind + n->first[k]));
-    for (int64_t k = 0; k < n->count; k++)
-        if (ritz_fit_stays(kind[k]))
-            n->column[n->fixed++] = k;
-    for (int64_t k = 0, at = n->fixed; k < n->count; k++)
-        if (!ritz_fit_stays(kind[k]))
-            n->column[at++] = k;
-    n->every = divide_work((n->count - n->fixed) * f->num_listed, most);
-    n->step = divide_work(2 * (n->count - n->fixed) * f->num_places, most);
-    return RITZ_OK;
-}
-
-/* The ratio without one of the first `left` columns of the order. */
-static ritz_status measure_without(nesting *n, int64_t left, int64_t which,
-                                   double most, double *out)
-{
-    memcpy(n->some, n->column, (size_t)left * sizeof *n->some);
-    memmove(n->some + which, n->some + which + 1,
-            (size_t)(left - which - 1) * sizeof *n->some);
-    return measure_ratio(n, left - 1, n->some, most, out);
-}
-
-/* Move a column of the order to another place in it, the others moving up. */
-static void move_column(nesting *n, int64_t from, int64_t to)
-{
-    const int64_t here = n->column[from];
-    const int64_t step = from < to ? 1 : -1;
-
-    for (int64_t k = from; k != to; k += step)
-        n->column[k] = n->column[k + step];
-    n->column[to] = here;
-}
-
-/* Sort the columns that may go by the ratio of the model without each alone. */
-static ritz_status order_alone(nesting *n)
-{
-    for (int64_t k = n->fixed; k < n->count && n->count > 1; k++) {
-        ritz_monitor_step("columns alone", k, n->count);
-        RITZ_CHECK(
-            measure_without(n, n->count, k, HUGE_VAL, &n->alone[n->column[k]]));
-    }
-    for (int64_t k = n->fixed + 1; k < n->count; k++) {
-        int64_t at = k;
-
-        while (at > n->fixed &&
-               n->alone[n->column[k]] > n->alone[n->column[at - 1]])
-            at--;
-        move_column(n, k, at);
-    }
-    return RITZ_OK;
-}
-
-/* A body without columns that must stay keeps the one that matters most
-   alone. */
-static void keep_one_each(nesting *n)
-{
-    for (int64_t k = 0; k < n->f->num_bodies; k++) {
-        int64_t at = n->fixed;
-
-        if (take_own(n, k, n->fixed, n->column) > 0)
-            continue;
-        while (n->column[at] < n->first[k] || n->column[at] >= n->first[k + 1])
-            at++;
-        move_column(n, at, n->fixed++);
-    }
-}
-
-/* Move one of the last few columns to the end: that which is missed least. */
-static ritz_status drop_column(nesting *n, int64_t left)
-{
-    double least = HUGE_VAL;
-    int64_t worst = left - 1;
-
-    for (int64_t t = 0; t < TRIED && left - 1 - t >= n->fixed; t++) {
-        double ratio = 0.0;
-
-        RITZ_CHECK(measure_without(n, left, left - 1 - t, least, &ratio));
-        if (ratio < least) {
-            least = ratio;
-            worst = left - 1 - t;
-        }
-    }
-    move_column(n, worst, left - 1);
-    return RITZ_OK;
-}
-
-/* Put the columns of all bodies in order, those that matter most first. If a
-   component is too large for that, they stay as they were made. */
-static ritz_status find_order(ritz_fitter *f, nesting *n)
-{
-    if (!f->scene && n->whole.item[0].T.nrow * n->count > most_entries)
-        return RITZ_OK;
-    RITZ_CHECK(order_alone(n));
-    if (f->scene)
-        keep_one_each(n);
-    /* the one that matters least alone is the first to go */
-    for (int64_t left = n->count - 1; left > n->fixed + 1; left--) {
-        ritz_monitor_step("columns in order", n->count - left, n->count);
-        RITZ_CHECK(drop_column(n, left));
-    }
-    return RITZ_OK;
-}
-
-/* The same for the bodies of a candidate before columns are left out: by the
-   order that was kept, or by a new one that is kept from now on. */
-static ritz_status order_columns(ritz_fitter *f, const ritz_fit_candidate *of,
-                                 nesting *n)
-{
-    const ritz_fit_ordered *known = NULL;
-
-    RITZ_CHECK(begin_nesting(f, n));
-    known = ritz_fit_ordered_find(f, of, n->count);
-    if (!known) {
-        RITZ_CHECK(find_order(f, n));
-        return ritz_fit_ordered_keep(f, of,
-                                     &(ritz_fit_ordered){.count = n->count,
-                                                         .fixed = n->fixed,
-                                                         .column = n->column});
-    }
-    n->fixed = known->fixed;
-    memcpy(n->column, known->column, (size_t)n->count * sizeof *n->column);
-    return RITZ_OK;
-}
-
 /* --- the path ------------------------------------------------------------- */
 
 /* A row of the path: the first columns of the order. */
-static ritz_status add_row(const nesting *n, int64_t count, ritz_fit_path *path)
+static ritz_status begin_row(const ritz_nesting *n, int64_t count,
+                             ritz_fit_candidate *row)
 {
-    ritz_fit_candidate *row = &path->row[path->count];
-
-    ritz_monitor_step("errors of the path", path->count, n->count - n->fixed);
     RITZ_CHECK_NEW(row->modes, n->f->num_bodies);
-    path->count++;
     for (int64_t k = 0; k < n->f->num_bodies; k++)
-        row->modes[k] = take_own(n, k, count, n->column);
+        row->modes[k] = ritz_nesting_own(n, k, count, n->column, NULL);
     row->num_bodies = n->f->num_bodies;
     row->worst = -1;
     row->columns = count;
-    RITZ_CHECK(judge_columns(n, count, n->column, row));
-    if (row->refusal[0])
-        row->worst = -1;
     return RITZ_OK;
 }
 
+/* Columns of the smallest model of the path. */
+static int64_t find_least(const ritz_nesting *n)
+{
+    return n->fixed > 0 ? n->fixed : 1;
+}
+
+/* Rows of the path that are judged at once. */
+typedef struct path_rows {
+    const ritz_nesting *n; /* borrowed, as the rows are */
+    ritz_fit_candidate *row;
+    _Atomic bool failed; /* for lack of memory: others are the row's own */
+} path_rows;
+
+static void judge_row(int64_t k, void *task)
+{
+    path_rows *rows = task;
+    ritz_fit_candidate *row = &rows->row[k];
+
+    if (judge_columns(rows->n, row->columns, rows->n->column, row) != RITZ_OK)
+        rows->failed = true;
+    if (row->refusal[0])
+        row->worst = -1;
+}
+
 /* The next cut below, and at last the smallest. */
-static int64_t next_cut(const nesting *n, int64_t columns, int64_t least)
+static int64_t next_cut(const ritz_nesting *n, int64_t columns, int64_t least)
 {
     if (columns == least)
         return least - 1;
     return columns - n->step > least ? columns - n->step : least;
 }
 
-/* Cut after cut, until as many as @p patience fail one after the other. */
-static ritz_status walk_path(const nesting *n, int64_t patience,
+/* Add some rows. @p count becomes that behind them. */
+static ritz_status add_rows(const ritz_nesting *n, int threads, int64_t some,
+                            int64_t *count, ritz_fit_path *path)
+{
+    const int64_t least = find_least(n);
+    path_rows rows = {.n = n, .row = path->row + path->count};
+    const int64_t before = path->count;
+
+    ritz_monitor_step("errors of the path", before, n->count - n->fixed);
+    for (; *count >= least && path->count < before + some;
+         *count = next_cut(n, *count, least))
+        RITZ_CHECK(begin_row(n, *count, &path->row[path->count++]));
+    ritz_team_each(threads, path->count - before, judge_row, &rows);
+    RITZ_REFUSE_IF(rows.failed, RITZ_ERR_MEMORY,
+                   "no memory for the errors of the path");
+    return RITZ_OK;
+}
+
+/* Whether a row is the last, as so many have failed one after the other. */
+static bool ends_path(const ritz_fit_candidate *row, int64_t patience,
+                      int64_t *failed)
+{
+    *failed = row->feasible ? 0 : *failed + 1;
+    return *failed >= patience;
+}
+
+/* Cut after cut, until as many as @p patience fail one after the other. Rows
+   that other threads have judged behind these are dropped. */
+static ritz_status walk_path(const ritz_nesting *n, int64_t patience,
                              ritz_fit_path *path)
 {
-    const int64_t least = n->fixed > 0 ? n->fixed : 1;
-    int64_t failed = 0;
+    [[maybe_unused]] RITZ_OWN(ritz_blas_single) single = ritz_blas_single_new();
+    const int64_t least = find_least(n);
+    const int threads = ritz_nesting_threads(n, n->count - least + 1);
+    const int64_t some =
+        patience < n->count ? threads : ritz_team_shares(threads);
+    int64_t failed = 0, kept = 0;
+    bool ended = false;
 
     path->num_bodies = n->f->num_bodies;
     RITZ_CHECK_NEW(path->row, n->count + 1);
-    for (int64_t count = n->count; count >= least && failed < patience;
-         count = next_cut(n, count, least)) {
-        RITZ_CHECK(add_row(n, count, path));
-        failed = path->row[path->count - 1].feasible ? 0 : failed + 1;
+    for (int64_t count = n->count; count >= least && !ended;) {
+        RITZ_CHECK(add_rows(n, threads, some, &count, path));
+        while (kept < path->count && !ended)
+            ended = ends_path(&path->row[kept++], patience, &failed);
     }
+    while (path->count > kept)
+        ritz_fit_candidate_free(&path->row[--path->count]);
     return RITZ_OK;
 }
 
@@ -364,8 +170,9 @@ void ritz_fit_path_free(ritz_fit_path *path)
 
 /* Give a body of `order` columns "system-response-relative" of the scene, which
    has no limit for this body alone. */
-static ritz_status note_errors(const nesting *n, const ritz_measures *errors,
-                               int64_t order, ritz_reduced *body)
+static ritz_status note_errors(const ritz_nesting *n,
+                               const ritz_measures *errors, int64_t order,
+                               ritz_reduced *body)
 {
     char name[RITZ_NAME_SIZE];
 
@@ -399,7 +206,7 @@ static const ritz_fit_candidate *find_row(const ritz_fit_path *path, int64_t k,
 }
 
 /* This body's first columns, with all of the others, into `some`. */
-static int64_t cut_alone(const nesting *n, int64_t k, int64_t columns)
+static int64_t cut_alone(const ritz_nesting *n, int64_t k, int64_t columns)
 {
     int64_t count = 0, passed = 0;
 
@@ -414,7 +221,7 @@ static int64_t cut_alone(const nesting *n, int64_t k, int64_t columns)
 }
 
 /* Errors of the model into a nested body: of its prefixes, and of all. */
-static ritz_status note_prefixes(const nesting *n, int64_t k,
+static ritz_status note_prefixes(const ritz_nesting *n, int64_t k,
                                  const ritz_fit_path *path, ritz_reduced *body)
 {
     RITZ_OWN(ritz_fit_candidate) judged = {0};
@@ -434,10 +241,11 @@ static ritz_status note_prefixes(const nesting *n, int64_t k,
 }
 
 /* A body with its T and its own order of columns. */
-static ritz_status nest_body(const nesting *n, int64_t k, ritz_reduced *out)
+static ritz_status nest_body(const ritz_nesting *n, int64_t k,
+                             ritz_reduced *out)
 {
-    const int64_t fixed = take_own(n, k, n->fixed, n->column);
-    const int64_t count = take_own(n, k, n->count, n->column);
+    const int64_t fixed = ritz_nesting_own(n, k, n->fixed, n->column, NULL);
+    const int64_t count = ritz_nesting_own(n, k, n->count, n->column, n->own);
 
     return ritz_reduced_nest(&n->whole.item[k], count, n->own,
                              fixed > 0 ? fixed : 1, out);
@@ -473,7 +281,7 @@ static ritz_status take_uncut(ritz_fitter *f,
 
 /* The fewest columns in a feasible row of the path below its first row, which
    has all columns; 0: no such row is feasible. */
-static ritz_status find_cut(nesting *n, int64_t *columns)
+static ritz_status find_cut(ritz_nesting *n, int64_t *columns)
 {
     RITZ_OWN(ritz_fit_path) path = {0};
 
@@ -497,12 +305,12 @@ static ritz_status cut_candidate(ritz_fitter *f,
                                  ritz_bodies *out)
 {
     [[maybe_unused]] RITZ_OWN(ritz_blas_single) single = ritz_blas_single_new();
-    RITZ_OWN(nesting) n = {0};
+    RITZ_OWN(ritz_nesting) n = {0};
 
     *found = 0;
     RITZ_CHECK(proven ? make_uncut(f, candidate, &n.whole)
                       : take_uncut(f, candidate, &n.whole));
-    RITZ_CHECK(order_columns(f, candidate, &n));
+    RITZ_CHECK(ritz_nesting_order(f, candidate, &n));
     if (columns == 0)
         RITZ_CHECK(find_cut(&n, &columns));
     if (columns < n.fixed || columns < 1 || columns > n.count)
@@ -510,7 +318,7 @@ static ritz_status cut_candidate(ritz_fitter *f,
     *found = columns;
     RITZ_CHECK(ritz_bodies_new(f->num_bodies, out));
     for (int64_t k = 0; k < f->num_bodies; k++) {
-        const int64_t own = take_own(&n, k, columns, n.column);
+        const int64_t own = ritz_nesting_own(&n, k, columns, n.column, n.own);
 
         RITZ_CHECK(
             ritz_reduced_nest(&n.whole.item[k], own, n.own, 1, &out->item[k]));
@@ -549,6 +357,17 @@ static ritz_status measure_cut(ritz_fitter *f, ritz_fit_joined *cut,
     return out->feasible && f->scene && f->place[0].estimator
                ? ritz_fit_bound_stage(f, &cut->stage, out)
                : RITZ_OK;
+}
+
+ritz_status ritz_fit_cost(ritz_fitter *f, ritz_fit_candidate *candidate)
+{
+    RITZ_OWN(ritz_fit_joined) joined = {0};
+
+    if (candidate->cost.order > 0)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_fit_make_bodies(f, candidate, false, &joined.own));
+    RITZ_CHECK(ritz_fit_join_own(f, &joined));
+    return ritz_fit_take_cost(f, &joined.stage, candidate);
 }
 
 ritz_status ritz_fit_bound(ritz_fitter *f, ritz_fit_candidate *candidate)
@@ -609,7 +428,7 @@ ritz_status ritz_fitter_reduced(ritz_fitter *f,
         ritz_orders_lend(f->orders);
     [[maybe_unused]] RITZ_OWN(ritz_spectra_lent) spectra =
         ritz_spectra_lend(f->spectra);
-    RITZ_OWN(nesting) n = {0};
+    RITZ_OWN(ritz_nesting) n = {0};
     RITZ_OWN(ritz_fit_path) path = {0};
     RITZ_OWN(ritz_reduced) nested = {0};
 
@@ -618,7 +437,7 @@ ritz_status ritz_fitter_reduced(ritz_fitter *f,
     RITZ_CHECK(candidate->method->nested || candidate->method->narrow
                    ? make_uncut(f, candidate, &n.whole)
                    : take_uncut(f, candidate, &n.whole));
-    RITZ_CHECK(order_columns(f, candidate, &n));
+    RITZ_CHECK(ritz_nesting_order(f, candidate, &n));
     if (candidate->columns < n.count) /* the others are left out */
         n.count = candidate->columns;
     RITZ_CHECK(walk_path(&n, INT64_MAX, &path));
@@ -650,7 +469,7 @@ static ritz_status make_answer(ritz_fitter *f,
                                const ritz_fit_candidate *candidate,
                                ritz_reduced *body, ritz_fit_path *path)
 {
-    RITZ_OWN(nesting) n = {0};
+    RITZ_OWN(ritz_nesting) n = {0};
 
     RITZ_CHECK(ritz_fit_make_bodies(f, candidate, !f->stopped, &n.whole));
     for (int64_t k = 0, j = 0; k < f->still.count; k++)
@@ -663,7 +482,7 @@ static ritz_status make_answer(ritz_fitter *f,
             RITZ_MOVE(body[f->body[k]], n.whole.item[k]);
         return RITZ_OK;
     }
-    RITZ_CHECK(order_columns(f, candidate, &n));
+    RITZ_CHECK(ritz_nesting_order(f, candidate, &n));
     RITZ_CHECK(walk_path(&n, INT64_MAX, path));
     for (int64_t k = 0; k < f->num_bodies; k++) {
         RITZ_CHECK(nest_body(&n, k, &body[f->body[k]]));

@@ -392,20 +392,42 @@ ritz_status ritz_reference_measure(const ritz_reference *reference,
                                         out);
 }
 
+/* Whether M, K and the damping are semidefinite. Of M that was a condition for
+   the modes; damping without a matrix D acts on each mode by itself. */
+static bool is_passive(const ritz_sides *sides)
+{
+    const ritz_pairs *modes = &sides->small;
+    const ritz_dense *D = sides->model.D;
+    bool passive = !D || !D->val;
+
+    for (int64_t k = 0; k < sides->reduced.count; k++)
+        passive = passive && sides->reduced.rate[k] >= 0.0;
+    for (int64_t k = modes->num_rigid; k < modes->Phi.ncol; k++)
+        passive = passive && modes->lambda[k] >= 0.0;
+    return passive;
+}
+
 ritz_status ritz_reference_measure_parts(const ritz_reference *reference,
                                          ritz_model reduced,
-                                         const ritz_dense *parts,
+                                         ritz_compared *compared,
                                          const ritz_verify_request *limits,
                                          int where, ritz_measures *out)
 {
     RITZ_OWN(ritz_sides)
-    sides = {.full = reference, .where = where, .parts = parts};
+    sides = {.full = reference,
+             .where = where,
+             .parts = compared ? compared->parts : NULL};
     RITZ_OWN(ritz_measures) found = {0};
 
     RITZ_CHECK(check_reduced(reference->component, reduced));
     RITZ_CHECK(open_sides(reduced, &reference->damping, reference->band_hz[1],
                           &sides));
     RITZ_CHECK(measure_sides(limits, &sides, &found));
+    if (compared) {
+        compared->passive = is_passive(&sides);
+        if (compared->keeps_modes)
+            RITZ_MOVE(compared->modes, sides.small);
+    }
     RITZ_MOVE(*out, found);
     return RITZ_OK;
 }

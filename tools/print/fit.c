@@ -624,7 +624,8 @@ ritz_status fit_search(cli_run *run, fit_options *given)
     const char *slash = strrchr(*run->operand, '/');
 
     take_options(run->program, given);
-    given->request.observe = observe_candidate;
+    if (run->record) /* otherwise fewer costs need to be measured */
+        given->request.observe = observe_candidate;
     given->request.stop = cli_stop;
     given->request.thorough = given->all;
     given->request.context = &f;

@@ -335,8 +335,8 @@ static void errors_without_a_basis_are_those_with_it(void **state)
                                      &request.tolerance, 0, &with));
     ritz_dense_free(&taken.T);
     assert_ok(ritz_reference_measure_parts(
-        reference, ritz_model_of_reduced(&taken, NULL), &parts,
-        &request.tolerance, 0, &without));
+        reference, ritz_model_of_reduced(&taken, NULL),
+        &(ritz_compared){.parts = &parts}, &request.tolerance, 0, &without));
     assert_non_null(find_measure(&with, "mac"));
     assert_true(find_measure(&with, "mac")->value < 1.0);
     assert_int_equal(with.count, without.count);
@@ -370,7 +370,7 @@ static void measures_without_a_limit_can_be_left_out(void **state)
         for (int t = 0; t < 2; t++)
             assert_ok(ritz_reference_measure_parts(
                 fitter->place[0].reference, ritz_model_of_reduced(&taken, NULL),
-                &parts, &limits,
+                &(ritz_compared){.parts = &parts}, &limits,
                 RITZ_AT_RANDOM | (t == 0 ? 0 : RITZ_ONLY_LIMITED),
                 t == 0 ? &all : &some));
         assert_non_null(find_measure(&some, ritz_measure_table[of[k]].name));
