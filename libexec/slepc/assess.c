@@ -1,13 +1,12 @@
 #include "assess.h"
 
 #include "base/alloc.h"
-#include "base/tolerances.h"
 #include "blocks.h"
 #include "linear/residuals.h"
+#include "linear/sharpen.h"
 #include "linear/tiles.h"
 #include "ranks.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -281,68 +280,163 @@ ritz_status assessor_residuals(const assessor *a, Mat X, ritz_pairs *P,
     return RITZ_OK;
 }
 
-/* --- quotients ------------------------------------------------------------ */
+/* --- Rayleigh-Ritz -------------------------------------------------------- */
 
-/* One more than the last of the flexible pairs, the lowest first, that have lost
-   digits. */
-static int64_t end_of_lost(const ritz_pairs *P, const double *energy)
+/* Working memory of the products, and the sums of this rank. */
+typedef struct projection {
+    ritz_sparse border; /* columns of other ranks in the rank's rows of K */
+    double *y, *low;    /* room for own + far rows of eight numbers */
+    ritz_dense product; /* the rank's rows of K X or M X, eight columns */
+    ritz_dense some_K, some_M; /* columns of Phi'K Phi and Phi'M Phi */
+} projection;
+
+static void projection_free(projection *p)
 {
-    int64_t j = P->num_rigid;
-
-    while (j < P->Phi.ncol &&
-           energy[j] * DBL_EPSILON > RITZ_DIGITS_LOST * P->lambda[j])
-        j++;
-    return j;
+    ritz_sparse_free(&p->border);
+    ritz_dense_free(&p->product);
+    ritz_dense_free(&p->some_K);
+    ritz_dense_free(&p->some_M);
+    RITZ_FREE(p->y, p->low);
 }
 
-/* quotient[2 j] + quotient[2 j + 1] := x'K x over the rows of this rank, of
-   `count` columns; K x with twice the digits, the sum of its products with x
-   with 64 bits. Y and L are working memory as large as a->x. */
-static void find_quotients(const assessor *a, int64_t count, double *Y,
-                           double *L, double *quotient)
+/* Column k of the border has the entries of the rank's rows of K in column k of
+   those of other ranks. */
+static ritz_status copy_border(const assessor *a, ritz_sparse *out)
 {
-    const int64_t size = (a->own + a->far) * WIDTH;
-    long double sum[WIDTH] = {0.0L};
+    const ritz_sparse *K = &a->K;
+    RITZ_OWN_ARRAY int64_t *next = NULL;
+    int64_t entries = 0;
 
-    memset(Y, 0, (size_t)size * sizeof *Y);
-    memset(L, 0, (size_t)size * sizeof *L);
-    ritz_tiles_here()->twofold(&a->K, a->x, Y, L);
-    for (int64_t i = 0; i < size; i += WIDTH)
-        for (int64_t c = 0; c < count; c++)
-            sum[c] += (long double)a->x[i + c] *
-                      ((long double)Y[i + c] + (long double)L[i + c]);
-    for (int64_t c = 0; c < count; c++) {
-        quotient[2 * c] = (double)sum[c];
-        quotient[2 * c + 1] = (double)(sum[c] - (long double)quotient[2 * c]);
+    RITZ_CHECK_NEW(next, a->far + 1);
+    for (int64_t p = 0; p < K->colptr[a->own]; p++)
+        if (K->rowind[p] >= a->own) {
+            next[K->rowind[p] - a->own + 1]++;
+            entries++;
+        }
+    RITZ_CHECK(ritz_sparse_new(a->own, a->far, entries, out));
+    for (int64_t k = 0; k < a->far; k++)
+        out->colptr[k + 1] = next[k + 1] += next[k];
+    for (int64_t i = 0; i < a->own; i++)
+        for (int64_t p = K->colptr[i]; p < K->colptr[i + 1]; p++)
+            if (K->rowind[p] >= a->own) {
+                const int64_t at = next[K->rowind[p] - a->own]++;
+
+                out->rowind[at] = i;
+                out->val[at] = K->val[p];
+            }
+    return RITZ_OK;
+}
+
+static ritz_status allocate_projection(const assessor *a, int64_t pairs,
+                                       int64_t lost, projection *p)
+{
+    RITZ_CHECK(copy_border(a, &p->border));
+    RITZ_CHECK_NEW(p->y, (a->own + a->far) * WIDTH);
+    RITZ_CHECK_NEW(p->low, (a->own + a->far) * WIDTH);
+    RITZ_CHECK(ritz_dense_new(a->own, WIDTH, &p->product));
+    RITZ_CHECK(ritz_dense_new(pairs, lost, &p->some_K));
+    return ritz_dense_new(pairs, lost, &p->some_M);
+}
+
+/* The rank's rows of K X with twice the digits, to p->y. The first product uses
+   that K is symmetric; what it adds to rows of other ranks is not used. */
+static void multiply_stiffness(const assessor *a, projection *p)
+{
+    const size_t size = (size_t)((a->own + a->far) * WIDTH) * sizeof *p->y;
+    const ritz_tiles *tiles = ritz_tiles_here();
+
+    memset(p->y, 0, size);
+    memset(p->low, 0, size);
+    tiles->twofold(&a->K, a->x, p->y, p->low);
+    tiles->twofold(&p->border, a->x + a->own * WIDTH, p->y, p->low);
+    for (int64_t k = 0; k < a->own * WIDTH; k++)
+        p->y[k] += p->low[k];
+}
+
+static void multiply_mass(const assessor *a, projection *p)
+{
+    ritz_tiles_here()->of[0].symmetric(0, a->own, &a->M, a->x, p->y);
+}
+
+/* Columns `at` and following of `out`: Phi'y over the rows of this rank. */
+static ritz_status project_product(const ritz_dense *Phi, int64_t count,
+                                   int64_t at, projection *p, ritz_dense *out)
+{
+    const ritz_dense y = ritz_dense_part(&p->product, 0, count);
+    RITZ_OWN(ritz_dense) part = {0};
+
+    for (int64_t c = 0; c < count; c++)
+        for (int64_t i = 0; i < y.nrow; i++)
+            ritz_dense_col(&y, c)[i] = p->y[i * WIDTH + c];
+    RITZ_CHECK(ritz_dense_mul_tn(Phi, &y, &part));
+    ritz_dense_put(&part, 0, at, out);
+    return RITZ_OK;
+}
+
+/* Fill p->some_K and p->some_M, summed over all ranks. Every rank takes part in
+   each load_columns(), also after a failure. */
+static ritz_status project_pairs(const assessor *a, const ritz_dense *Phi,
+                                 int64_t first, projection *p)
+{
+    const int64_t end = first + p->some_K.ncol;
+    const int64_t sums = p->some_K.nrow * p->some_K.ncol;
+    ritz_status status = RITZ_OK;
+
+    for (int64_t j = first; j < end; j += WIDTH) {
+        const int64_t count = count_next(j, end);
+
+        load_columns(a, Phi, j, count);
+        multiply_stiffness(a, p);
+        if (status == RITZ_OK)
+            status = project_product(Phi, count, j - first, p, &p->some_K);
+        multiply_mass(a, p);
+        if (status == RITZ_OK)
+            status = project_product(Phi, count, j - first, p, &p->some_M);
     }
+    RANKS_CHECK(status);
+    ranks_sum(p->some_K.val, sums);
+    ranks_sum(p->some_M.val, sums);
+    return RITZ_OK;
 }
 
-/* x'M x = 1, so that x'K x is the quotient. */
+/* Eigenvalues, and coefficients of the vectors, from rank 0 in every rank. */
+static ritz_status turn_pairs(const projection *p, ritz_pairs *P, ritz_dense *Q)
+{
+    RITZ_OWN(ritz_pairs) found = {0};
+    const int64_t pairs = P->Phi.ncol;
+    ritz_status status = RITZ_OK;
+
+    RANKS_CHECK(ritz_dense_new(pairs, pairs, Q));
+    if (ranks_own() == 0)
+        status = ritz_pairs_turn(P, &p->some_K, &p->some_M, &found);
+    RANKS_CHECK(status);
+    if (ranks_own() == 0) {
+        memcpy(P->lambda, found.lambda, (size_t)pairs * sizeof *P->lambda);
+        ritz_dense_put(&found.Phi, 0, 0, Q);
+    }
+    ranks_share(P->lambda, pairs * (int64_t)sizeof *P->lambda);
+    ranks_share(Q->val, pairs * pairs * (int64_t)sizeof *Q->val);
+    return RITZ_OK;
+}
+
 ritz_status assessor_sharpen(const assessor *a, Mat X, const double *energy,
                              ritz_pairs *P)
 {
-    const int64_t first = P->num_rigid;
-    const int64_t end = end_of_lost(P, energy);
-    RITZ_OWN_ARRAY double *Y = NULL, *L = NULL, *quotient = NULL;
+    const int64_t lost = ritz_pairs_lost(P, energy) - P->num_rigid;
+    RITZ_OWN(projection) p = {0};
+    RITZ_OWN(ritz_dense) Q = {0};
+    ritz_status status = RITZ_OK;
     ritz_dense x;
 
-    Y = ritz_zalloc((a->own + a->far) * WIDTH, sizeof *Y);
-    L = ritz_zalloc((a->own + a->far) * WIDTH, sizeof *L);
-    quotient = ritz_zalloc(2 * (end - first), sizeof *quotient);
-    RANKS_CHECK(Y && L && quotient ? RITZ_OK : RITZ_ERR_MEMORY);
+    if (lost == 0)
+        return RITZ_OK;
+    RANKS_CHECK(allocate_projection(a, P->Phi.ncol, lost, &p));
     x = block_take(X);
-    for (int64_t j = first; j < end; j += WIDTH) {
-        load_columns(a, &x, j, count_next(j, end));
-        find_quotients(a, count_next(j, end), Y, L, quotient + 2 * (j - first));
-    }
+    status = project_pairs(a, &x, P->num_rigid, &p);
+    if (status == RITZ_OK)
+        status = turn_pairs(&p, P, &Q);
+    if (status == RITZ_OK)
+        status = ranks_agree(ritz_dense_times(&Q, &x));
     block_return(X, &x);
-    ranks_sum(quotient, 2 * (end - first));
-    for (int64_t j = first; j < P->Phi.ncol; j++) {
-        if (j < end)
-            P->lambda[j] =
-                quotient[2 * (j - first)] + quotient[2 * (j - first) + 1];
-        if (j > 0)
-            P->lambda[j] = fmax(P->lambda[j], P->lambda[j - 1]);
-    }
-    return RITZ_OK;
+    return status;
 }

@@ -1,5 +1,5 @@
 /*
- * Residuals and accurate eigenvalues of distributed pairs. Eight vectors at a
+ * Residuals of distributed pairs, and pairs of more digits. Eight vectors at a
  * time are stored row by row, those of the rank's own rows and of the rows of
  * other ranks in which these have entries, and multiplied by the kernels of
  * src/linear/tiles.h.
@@ -39,14 +39,15 @@ ritz_status assessor_residuals(const assessor *a, Mat X, ritz_pairs *P,
                                double *energy, double *worst);
 
 /**
- * Compute eigenvalues that have lost digits again, by x'K x / x'M x with sums
- * in extended precision. The rounding of the factor, which depends on the
- * number of ranks, changes low eigenvalues, as of thin plates, in proportion;
- * it changes the quotient only by its square. Collective.
+ * Compute pairs that have lost digits again, as ritz_pairs_sharpen() does, with
+ * products by K of twice the digits. Without it the rounding of the factor,
+ * which depends on the number of ranks, would remain in low pairs, as of thin
+ * plates. Collective.
  *
- * @param[in]     X       M-orthonormal, by ascending eigenvalue
+ * @param[in,out] X       M-orthonormal, by ascending eigenvalue
  * @param[in]     energy  of assessor_residuals()
  * @param[in,out] P       lambda is changed, num_rigid is read
+ * @return as ritz_pairs_sharpen()
  */
 ritz_status assessor_sharpen(const assessor *a, Mat X, const double *energy,
                              ritz_pairs *P);

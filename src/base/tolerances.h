@@ -277,12 +277,9 @@
 #define RITZ_SHIFT_FARTHER 1e2
 /* Convergence of ARPACK: eigenvalues err by its square. */
 #define RITZ_ARNOLDI_SETTLED 1e-12
-/* Rounding of x'K x, relative to lambda, above which engine slepc computes an
-   eigenvalue again as a Rayleigh quotient with sums in extended precision, so
-   that it does not depend on the number of processes. */
-#define RITZ_DIGITS_LOST 1e-13
-/* The same for the built-in engines, which then compute vectors again as well.
-   Rounding below this leaves errors of up to half of it, with any shift:
+/* Rounding of x'K x, relative to lambda, above which pairs are computed again
+   with sums of twice the digits. Rounding below this leaves errors of up to half
+   of it, with any shift:
    residuals |lambda K^-1 M x - x| / |x| of 1e-10 are promised, and a response at
    a relative distance d of w^2 from a mode has the error of the eigenvalue
    divided by d. A free bar of 700 elements, with rounding of 4.4e-11, had errors

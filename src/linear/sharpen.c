@@ -6,9 +6,7 @@
 #include <float.h>
 #include <math.h>
 
-/* The number of the last flexible pair that has lost digits, counted from 1;
-   num_rigid if there is none. */
-static int64_t end_of_lost(const ritz_pairs *P, const double *energy)
+int64_t ritz_pairs_lost(const ritz_pairs *P, const double *energy)
 {
     int64_t end = P->Phi.ncol;
 
@@ -42,42 +40,51 @@ static ritz_status project_columns(const ritz_sparse *A, product *multiply,
     return RITZ_OK;
 }
 
-/* Phi'A Phi, in which the columns and rows from `first` to end - 1 are computed.
-   All other entries are those of exact pairs: 0, and on the diagonal the numbers
-   given, or 1 if they are NULL. */
-static ritz_status project(const ritz_sparse *A, product *multiply,
-                           const ritz_dense *Phi, int64_t first, int64_t end,
-                           const double *diagonal, ritz_dense *out)
+/* The whole of Phi'A Phi from its columns `first` and following. All entries in
+   other rows and columns are those of exact pairs: 0, and on the diagonal the
+   numbers given, or 1 if they are NULL. */
+static ritz_status complete(const ritz_dense *some, int64_t first,
+                            const double *diagonal, ritz_dense *out)
 {
-    RITZ_OWN(ritz_dense) some = {0};
+    const int64_t end = first + some->ncol;
 
-    RITZ_CHECK(project_columns(A, multiply, Phi, first, end, &some));
-    RITZ_CHECK(ritz_dense_new(Phi->ncol, Phi->ncol, out));
-    for (int64_t j = 0; j < Phi->ncol; j++)
+    RITZ_CHECK(ritz_dense_new(some->nrow, some->nrow, out));
+    for (int64_t j = 0; j < some->nrow; j++)
         ritz_dense_col(out, j)[j] = diagonal ? diagonal[j] : 1.0;
-    ritz_dense_put(&some, 0, first, out);
+    ritz_dense_put(some, 0, first, out);
     for (int64_t j = first; j < end; j++)
-        for (int64_t i = 0; i < Phi->ncol; i++)
+        for (int64_t i = 0; i < some->nrow; i++)
             if (i < first || i >= end)
                 ritz_dense_col(out, i)[j] = ritz_dense_col(out, j)[i];
     ritz_dense_symmetrise(out);
     return RITZ_OK;
 }
 
+ritz_status ritz_pairs_turn(const ritz_pairs *P, const ritz_dense *some_K,
+                            const ritz_dense *some_M, ritz_pairs *out)
+{
+    RITZ_OWN(ritz_dense) K_r = {0}, M_r = {0};
+
+    RITZ_CHECK(complete(some_K, P->num_rigid, P->lambda, &K_r));
+    RITZ_CHECK(complete(some_M, P->num_rigid, NULL, &M_r));
+    return ritz_eigen_dense(&K_r, &M_r, out);
+}
+
 ritz_status ritz_pairs_sharpen(const ritz_sparse *K, const ritz_sparse *M,
                                const double *energy, ritz_pairs *P)
 {
     const int64_t first = P->num_rigid;
-    const int64_t end = end_of_lost(P, energy);
-    RITZ_OWN(ritz_dense) K_r = {0}, M_r = {0};
+    const int64_t end = ritz_pairs_lost(P, energy);
+    RITZ_OWN(ritz_dense) some_K = {0}, some_M = {0};
     RITZ_OWN(ritz_pairs) found = {0};
 
     if (end == first)
         return RITZ_OK;
-    RITZ_CHECK(project(K, ritz_sparse_mul_twofold, &P->Phi, first, end,
-                       P->lambda, &K_r));
-    RITZ_CHECK(project(M, ritz_sparse_mul, &P->Phi, first, end, NULL, &M_r));
-    RITZ_CHECK(ritz_eigen_dense(&K_r, &M_r, &found));
+    RITZ_CHECK(project_columns(K, ritz_sparse_mul_twofold, &P->Phi, first, end,
+                               &some_K));
+    RITZ_CHECK(
+        project_columns(M, ritz_sparse_mul, &P->Phi, first, end, &some_M));
+    RITZ_CHECK(ritz_pairs_turn(P, &some_K, &some_M, &found));
     RITZ_CHECK(ritz_dense_times(&found.Phi, &P->Phi));
     for (int64_t j = 0; j < P->Phi.ncol; j++)
         P->lambda[j] = found.lambda[j];

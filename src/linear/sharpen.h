@@ -25,4 +25,20 @@
 ritz_status ritz_pairs_sharpen(const ritz_sparse *K, const ritz_sparse *M,
                                const double *energy, ritz_pairs *P);
 
+/** One more than the last flexible pair that has lost digits; num_rigid if none
+ * has. P and energy as for ritz_pairs_sharpen(); of P->Phi only ncol is read. */
+int64_t ritz_pairs_lost(const ritz_pairs *P, const double *energy);
+
+/**
+ * The Rayleigh-Ritz step of ritz_pairs_sharpen(), where vectors are distributed.
+ *
+ * @param[in]  P               num_rigid, lambda and Phi.ncol are read
+ * @param[in]  some_K, some_M  columns of Phi'K Phi and Phi'M Phi, from num_rigid
+ *                             to that before ritz_pairs_lost()
+ * @param[out] out             lambda, and as Phi the coefficients of the vectors
+ * @return RITZ_ERR_MEMORY, or that of ritz_eigen_dense()
+ */
+ritz_status ritz_pairs_turn(const ritz_pairs *P, const ritz_dense *some_K,
+                            const ritz_dense *some_M, ritz_pairs *out);
+
 #endif

@@ -3,6 +3,10 @@
 membrane SIDE [EVERY]: write m.K.mtx, m.M.mtx and m.dofs of a free square grid of
 SIDE x SIDE masses. Springs join neighbours, entries of M couple diagonal ones.
 With EVERY = 7, say, only every seventh dof has a mass, and M is diagonal.
+beam NUMBER: the same for equal masses in a row. Springs, no two alike, resist
+the bending at each mass.
+residual BASIS...: fail unless |lambda K^-1 M x - x| / |x| of all modes is below
+1e-10, with the matrices that `beam` wrote and its first two masses held.
 damping DOFS SIDE: write m.D.mtx, which is not symmetric, and m.K4.mtx, for that
 grid.
 alike REDUCED REDUCED...: fail unless all reduced components agree with the first.
@@ -32,6 +36,10 @@ def membrane(side, every=1):
             for to in ([k + side + 1] if (k + 1) % side else []) + \
                     ([k + side - 1] if k % side else []):
                 mass[to, k] = 0.1
+    write(n, stiffness, mass)
+
+
+def write(n, stiffness, mass):
     for name, entries in ("K", stiffness), ("M", mass):
         with open(f"m.{name}.mtx", "w") as file:
             print("%%MatrixMarket matrix coordinate real symmetric", file=file)
@@ -41,6 +49,39 @@ def membrane(side, every=1):
     with open("m.dofs", "w") as file:
         for k in range(n):
             print(k + 1, 3, file=file)
+
+
+def bend(n):
+    K = np.zeros((n, n))
+    for k in range(n - 2):
+        bend = np.array([1.0, -2.0, 1.0])
+        K[k:k + 3, k:k + 3] += (1 + 0.3 * np.sin(k)) * np.outer(bend, bend)
+    return K
+
+
+def beam(number):
+    n = int(number)
+    K = bend(n)
+    write(n, {(i, j): K[i, j] for i in range(n)
+              for j in range(max(0, i - 2), i + 1)},
+          {(k, k): 1.0 for k in range(n)})
+
+
+def residual(*paths):
+    """Two steps of refinement give as many digits as long doubles have."""
+    for path in paths:
+        T, hertz = columns(path)
+        modes = np.isfinite(hertz)
+        x = T[2:, modes].astype(np.longdouble)
+        value = (2 * np.pi * hertz[modes].astype(np.longdouble)) ** 2
+        K = bend(len(T))[2:, 2:]
+        moved = 0 * x
+        for _ in range(3):
+            rest = x - K.astype(np.longdouble) @ moved
+            moved += np.linalg.solve(K, rest.astype(float))
+        worst = max(np.sqrt(((value * moved - x) ** 2).sum(axis=0) /
+                            (x ** 2).sum(axis=0)))
+        assert worst <= 1e-10, f"{path}: a residual of {worst}"
 
 
 def damping(path, side):
@@ -120,6 +161,6 @@ def damage(path, entry, value, *how):
 
 
 if __name__ == "__main__":
-    {"membrane": membrane, "damping": damping, "alike": alike, "same": same,
-     "damage": damage}[sys.argv[1]](
+    {"membrane": membrane, "beam": beam, "residual": residual,
+     "damping": damping, "alike": alike, "same": same, "damage": damage}[sys.argv[1]](
         *sys.argv[2:])

@@ -133,6 +133,16 @@ expect 0 '' ritz-basis -q craig-bampton --modes 20 few.h5 -o 0.h5
 expect 0 '' ranks 2 -q craig-bampton --modes 20 --engine slepc few.h5 -o 2.h5
 works 'a mass of low rank' check same 0.h5 2.h5
 
+# a beam so long that low modes lose six digits in K x
+works 'a beam is made' check beam 400
+expect 0 '' ritz-import -q --stiffness m.K.mtx --mass m.M.mtx --dofs m.dofs \
+    --port "end=1-2:3" -o beam.h5
+for n in 1 2 4; do
+    expect 0 '' ranks $n -q craig-bampton --modes 12 --engine slepc beam.h5 \
+        -o $n.h5
+done
+works 'residuals of a long beam' check residual 1.h5 2.h5 4.h5
+
 # fewer rows than ranks, and none
 works 'nine dofs are made' check membrane 3
 expect 0 '' ritz-import -q --stiffness m.K.mtx --mass m.M.mtx --dofs m.dofs \
