@@ -6,6 +6,7 @@
 #include "blocks.h"
 #include "krylov.h"
 #include "lanczos.h"
+#include "linear/first_shift.h"
 #include "linear/requested.h"
 #include "ranks.h"
 
@@ -67,8 +68,10 @@ ritz_status modes_foresee(rank_pencil *p, const ritz_span *span, double *limit,
 }
 
 /* Factor K - sigma M, and refuse it if an eigenvalue is below sigma. */
-static ritz_status factor_below(rank_pencil *p, double sigma)
+static ritz_status factor_below(void *pencil, double sigma)
 {
+    rank_pencil *p = pencil;
+
     RITZ_CHECK(rank_pencil_factor(p, sigma));
     RITZ_REFUSE_IF(p->negative > 0, RITZ_ERR_SINGULAR,
                    "stiffness and mass together are not positive definite");
@@ -78,21 +81,12 @@ static ritz_status factor_below(rank_pencil *p, double sigma)
 ritz_status modes_shift(rank_pencil *p, bool held, double limit)
 {
     double sigma = -RITZ_FIRST_SHIFT * p->typical;
-    ritz_status status = RITZ_OK;
 
     if (held)
         return factor_below(p, 0.0);
     if (limit > 0.0)
         sigma = -fmax(fmin(-sigma, 0.1 * limit), -RITZ_LEAST_SHIFT * sigma);
-    status = factor_below(p, sigma);
-    while (status == RITZ_ERR_SINGULAR && -sigma < 1e3 * p->typical) {
-        sigma = fmin(100.0 * sigma, -RITZ_FIRST_SHIFT * p->typical);
-        status = factor_below(p, sigma);
-    }
-    if (status == RITZ_ERR_SINGULAR)
-        ritz_record("stiffness and mass together are not positive definite, "
-                    "is there a mechanism without mass?");
-    return status;
+    return ritz_first_factor(p->typical, sigma, factor_below, p);
 }
 
 /* --- pairs ---------------------------------------------------------------- */

@@ -103,3 +103,19 @@ ritz_status ritz_first_shift(const ritz_sparse *K, double typical,
                        fmax(bending, RITZ_FIRST_LEAST * pow(part, 2.0 / 3.0)));
     return RITZ_OK;
 }
+
+ritz_status ritz_first_factor(double typical, double sigma,
+                              ritz_status (*factor)(void *of, double sigma),
+                              void *of)
+{
+    ritz_status status = factor(of, sigma);
+
+    while (status == RITZ_ERR_SINGULAR && -sigma < 1e3 * typical) {
+        sigma = fmin(100.0 * sigma, -RITZ_FIRST_SHIFT * typical);
+        status = factor(of, sigma);
+    }
+    if (status == RITZ_ERR_SINGULAR)
+        ritz_record("stiffness and mass together are not positive definite, "
+                    "is there a mechanism without mass?");
+    return status;
+}

@@ -22,4 +22,18 @@
 ritz_status ritz_first_shift(const ritz_sparse *K, double typical,
                              int64_t modes, double *out);
 
+/**
+ * Call @p factor for K - sigma M, with shifts further and further away from 0
+ * while it breaks down.
+ *
+ * @param[in] typical  as above
+ * @param[in] sigma    < 0, the first shift
+ * @param[in] factor   returns RITZ_ERR_SINGULAR if K - sigma M is not positive
+ *                     definite
+ * @return RITZ_ERR_SINGULAR if it is not at any shift up to 1e3 @p typical
+ */
+ritz_status ritz_first_factor(double typical, double sigma,
+                              ritz_status (*factor)(void *of, double sigma),
+                              void *of);
+
 #endif

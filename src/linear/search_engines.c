@@ -22,6 +22,7 @@
 #include "linear/block_lanczos.h"
 #include "linear/density.h"
 #include "linear/factor.h"
+#include "linear/first_shift.h"
 #include "linear/slices.h"
 
 #include <math.h>
@@ -42,8 +43,9 @@ void ritz_mode_search_free(ritz_mode_search *s)
 }
 
 /* Factor K - sigma M in place of what was factored before. */
-static ritz_status shift_to(ritz_mode_search *s, double sigma)
+static ritz_status shift_to(void *search, double sigma)
 {
+    ritz_mode_search *s = search;
     RITZ_OWN(ritz_sparse) A = {0};
     ritz_status status = RITZ_OK;
 
@@ -58,16 +60,7 @@ static ritz_status shift_to(ritz_mode_search *s, double sigma)
 
 ritz_status ritz_search_shift(ritz_mode_search *s, double sigma)
 {
-    ritz_status status = shift_to(s, sigma);
-
-    while (status == RITZ_ERR_SINGULAR && -sigma < 1e3 * s->typical) {
-        sigma = fmin(100.0 * sigma, -RITZ_FIRST_SHIFT * s->typical);
-        status = shift_to(s, sigma);
-    }
-    if (status == RITZ_ERR_SINGULAR)
-        ritz_record("stiffness and mass together are not positive definite, "
-                    "is there a mechanism without mass?");
-    return status;
+    return ritz_first_factor(s->typical, sigma, shift_to, s);
 }
 
 ritz_status ritz_find_by_blocks(ritz_mode_search *s, ritz_dense *X,
