@@ -109,6 +109,11 @@ typedef struct ritz_output4_spelling {
     int64_t (*count_column)(ritz_output4_reader *r,
                             const ritz_output4_build *build,
                             const int64_t n[3]);
+    /** Read the strings of a column whose form is the most frequent; false, and
+     * nothing is read, if it is another one or anything is wrong. NULL: none
+     * is that frequent. */
+    bool (*read_usual)(ritz_output4_reader *r, ritz_output4_build *build,
+                       int64_t words);
     /** Take what stands behind ICOL = NCOL + 1. NULL: it was taken whole. */
     ritz_status (*skip_last)(ritz_output4_reader *r,
                              const ritz_output4_build *build, int64_t words);

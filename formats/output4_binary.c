@@ -241,6 +241,106 @@ static ritz_status read_record_dense(ritz_output4_reader *b,
     return read_record_numbers(b, build, n[1] - 1, reals);
 }
 
+/* ---- the usual strings -------------------------------------------------- */
+
+/*
+ * Nearly all large files hold real doubles behind pairs of integers, in the
+ * byte order of the processor. Their strings, which may be single values, are
+ * gone through in one loop each for counting and reading.
+ */
+static bool is_usual(const ritz_output4_reader *b,
+                     const ritz_output4_build *build)
+{
+    return __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__ && !b->big_endian &&
+           b->integer == 4 && b->real == 8 && build->header.numbers == 1 &&
+           build->wide == 2 && build->rule == RITZ_OUTPUT4_BIGMAT;
+}
+
+/* A string at @p at, of which the column has @p left words. @return how many
+ * values it has, at least 1; 0 if it is not possible */
+static inline int64_t take_usual(const char *at, int64_t left, int64_t nrow,
+                                 int64_t *row)
+{
+    int32_t pair[2];
+    int64_t values = 0;
+
+    if (left < 4)
+        return 0;
+    memcpy(pair, at, sizeof pair);
+    values = pair[0] / 2;
+    *row = (int64_t)pair[1] - 1;
+    return pair[0] % 2 == 1 && pair[0] > 1 && 2 * values + 2 <= left &&
+                   *row >= 0 && *row + values <= nrow
+               ? values
+               : 0;
+}
+
+static int64_t count_usual(const char *at, int64_t words, int64_t nrow)
+{
+    int64_t count = 0;
+
+    for (int64_t left = words; left > 0;) {
+        int64_t row = 0;
+        const int64_t values = take_usual(at, left, nrow, &row);
+
+        if (values == 0)
+            return -1;
+        count += values;
+        at += 8 * (values + 1);
+        left -= 2 * (values + 1);
+    }
+    return count;
+}
+
+/* Copy values; false if one is zero or not finite. */
+static inline bool copy_values(const char *at, int64_t row, int64_t count,
+                               int64_t *rows, double *values)
+{
+    const uint64_t exponent = UINT64_C(0x7ff0000000000000);
+    uint64_t unusual = 0;
+
+    for (int64_t k = 0; k < count; k++) {
+        uint64_t bits = 0;
+
+        memcpy(&bits, at + 8 * k, 8);
+        unusual |= (uint64_t)(bits << 1 == 0) |
+                   (uint64_t)((bits & exponent) == exponent);
+        memcpy(&values[k], &bits, 8);
+        rows[k] = row + k;
+    }
+    return unusual == 0;
+}
+
+/* The column is left to others, as it was, if it has anything unusual. */
+static bool read_usual(ritz_output4_reader *b, ritz_output4_build *build,
+                       int64_t words)
+{
+    const int64_t nrow = build->header.nrow;
+    ritz_triplets *to = &build->entries;
+    const char *at = b->data;
+    int64_t below = build->below, count = to->count;
+
+    if (!is_usual(b, build))
+        return false;
+    for (int64_t left = words; left > 0;) {
+        int64_t row = 0;
+        const int64_t values = take_usual(at, left, nrow, &row);
+
+        if (values == 0 || row < below || values > to->room - count ||
+            !copy_values(at + 8, row, values, to->row + count, to->re + count))
+            return false;
+        below = row + values;
+        count += values;
+        at += 8 * (values + 1);
+        left -= 2 * (values + 1);
+    }
+    b->data = at;
+    build->below = below;
+    to->counts[build->column + 1] = count - to->count;
+    to->count = count;
+    return true;
+}
+
 static int64_t count_record(ritz_output4_reader *b,
                             const ritz_output4_build *build, const int64_t n[3])
 {
@@ -249,6 +349,8 @@ static int64_t count_record(ritz_output4_reader *b,
 
     if (n[1] != 0)
         return (b->data_end - b->data) / (b->real * build->header.numbers);
+    if (is_usual(b, build))
+        return count_usual(b->data, n[2], build->header.nrow);
     for (int64_t left = n[2]; left > 0;) {
         ritz_output4_string string = {0};
         int64_t header[2] = {0};
@@ -272,4 +374,5 @@ const ritz_output4_spelling ritz_output4_binary = {
     .take_string = take_record_string,
     .read_numbers = read_record_numbers,
     .count_column = count_record,
+    .read_usual = read_usual,
 };

@@ -144,6 +144,8 @@ static ritz_status read_sparse(ritz_output4_reader *r,
     int64_t rule = build->rule;
     int64_t wide = build->wide;
 
+    if (r->as->read_usual && r->as->read_usual(r, build, words))
+        return RITZ_OK;
     for (int64_t k = 0; k < r->widths * RITZ_OUTPUT4_RULES; k++) {
         ritz_status status =
             try_strings(r, &start, build, (rule + k) % RITZ_OUTPUT4_RULES,

@@ -63,13 +63,15 @@ static void handle_fault(int number, siginfo_t *info, void *context)
 
 void ritz_map_files(void)
 {
-    struct sigaction action = {.sa_sigaction = handle_fault,
-                               .sa_flags = SA_SIGINFO | SA_ONSTACK};
+    struct sigaction now, action = {.sa_sigaction = handle_fault,
+                                    .sa_flags = SA_SIGINFO | SA_ONSTACK};
 
-    if (atomic_load(&allowed))
-        return;
     sigemptyset(&action.sa_mask);
-    if (sigaction(SIGBUS, &action, &before) == 0)
+    if (sigaction(SIGBUS, NULL, &now) != 0 ||
+        ((now.sa_flags & SA_SIGINFO) && now.sa_sigaction == handle_fault))
+        return;
+    before = now;
+    if (sigaction(SIGBUS, &action, NULL) == 0)
         atomic_store(&allowed, true);
 }
 

@@ -12,8 +12,8 @@
 
 /**
  * Let files be mapped from now on, by a handler of SIGBUS for the whole process,
- * which calls the handler before it for all other faults. A program that has its
- * own handlers sets these first. Until this is called no file is mapped.
+ * which calls the handler before it for all other faults. A program that sets a
+ * handler of its own later calls this again. Until then no file is mapped.
  */
 void ritz_map_files(void);
 

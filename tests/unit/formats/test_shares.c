@@ -2,6 +2,7 @@
    thread does, and refuse a damaged file with the same sentence. */
 #include "testing.h"
 
+#include "base/mapped.h"
 #include "foreign.h"
 
 #include <ritz/import.h>
@@ -233,6 +234,136 @@ strings_of_an_unmarked_file_are_read_as_one_thread_does(void **state)
     remove("shares.op4");
 }
 
+/* The place of a double in the middle of some bytes, or behind it. */
+static char *find_value(char *bytes, int64_t size, double value)
+{
+    for (int64_t k = size / 2; k + 8 <= size; k++)
+        if (memcmp(bytes + k, &value, sizeof value) == 0)
+            return bytes + k;
+    fail_msg("the file does not hold %g", value);
+    return NULL;
+}
+
+/* Zeros are counted before they are read, and leave no gap. */
+static void zeros_and_nan_in_binary_are_read_as_one_thread_does(void **)
+{
+    static const double odd[] = {0.0, -0.0, (double)NAN, (double)INFINITY};
+    const ritz_output4_style style = {.sparse = true};
+    RITZ_OWN(ritz_matrix) m = {0};
+    char *bytes = NULL;
+    int64_t size = 0;
+
+    make_matrix(350, &m);
+    assert_ok(ritz_output4_write("shares.op4", 1, &m, &style));
+    assert_ok(ritz_bytes_read("shares.op4", &size, &bytes));
+    for (size_t k = 0; k < sizeof odd / sizeof *odd; k++) {
+        const double value = m.A.val[m.A.colptr[250] + 10];
+        RITZ_OWN(ritz_matrices) read = {0};
+        char *at = find_value(bytes, size, value);
+
+        memcpy(at, &odd[k], sizeof value);
+        assert_int_equal(compare_readings(bytes, size),
+                         k < 2 ? RITZ_OK : RITZ_ERR_FORMAT);
+        if (k < 2) {
+            assert_ok(foreign_parse(bytes, size, &read));
+            assert_int_equal(read.matrix[0].A.colptr[350], m.A.colptr[350] - 1);
+        } else {
+            assert_non_null(strstr(ritz_error_message(), "is not finite"));
+        }
+        memcpy(at, &value, sizeof value);
+    }
+    free(bytes);
+    remove("shares.op4");
+}
+
+/* Every second line of numbers ends in blanks, so that lines cannot be passed by
+   their length; lines may end in CR LF. */
+static void lines_of_other_lengths_are_read_as_one_thread_does(void **)
+{
+    static const char *const ends[] = {"\n", "\r\n", "  \n"};
+    const ritz_output4_style style = {
+        .text = true, .digits = 17, .sparse = true};
+    RITZ_OWN(ritz_matrix) m = {0};
+    char *bytes = NULL, *longer = NULL;
+    int64_t size = 0;
+
+    make_matrix(120, &m);
+    assert_ok(ritz_output4_write("shares.op4", 1, &m, &style));
+    assert_ok(ritz_bytes_read("shares.op4", &size, &bytes));
+    longer = malloc(2 * (size_t)size);
+    assert_non_null(longer);
+    for (size_t k = 0; k < sizeof ends / sizeof *ends; k++) {
+        int64_t used = 0;
+
+        for (int64_t i = 0, line = 0; i < size; i++) {
+            if (bytes[i] == '\n' && line++ % 2 == 1)
+                used += sprintf(longer + used, "%s", ends[k]);
+            else
+                longer[used++] = bytes[i];
+        }
+        assert_ok(compare_readings(longer, used));
+    }
+    free(longer);
+    free(bytes);
+    remove("shares.op4");
+}
+
+/* The second matrix has marks of its own, behind those of the first. */
+static void threads_read_each_matrix_of_a_file(void **)
+{
+    static const ritz_output4_style styles[] = {
+        {.text = true, .digits = 17, .sparse = true}, {.sparse = true}};
+    ritz_matrix m[2];
+
+    make_matrix(350, &m[0]);
+    make_matrix(351, &m[1]);
+    for (size_t k = 0; k < sizeof styles / sizeof *styles; k++) {
+        RITZ_OWN(ritz_matrices) read = {0};
+        char *bytes = NULL;
+        char sentence[400];
+        int64_t size = 0;
+
+        assert_ok(ritz_output4_write("shares.op4", 2, m, &styles[k]));
+        assert_ok(ritz_bytes_read("shares.op4", &size, &bytes));
+        assert_ok(compare_readings(bytes, size));
+        assert_ok(read_by(THREADS, bytes, size, &read, sentence));
+        assert_int_equal(read.count, 2);
+        assert_memory_equal(read.matrix[1].A.val, m[1].A.val,
+                            (size_t)m[1].A.colptr[351] * sizeof *m[1].A.val);
+        free(bytes);
+    }
+    ritz_matrix_free(&m[0]);
+    ritz_matrix_free(&m[1]);
+    remove("shares.op4");
+}
+
+/* 5 MB, which are mapped once a program wants it. */
+static void a_mapped_file_that_is_changed_is_refused(void **)
+{
+    const ritz_output4_style style = {.sparse = true};
+    RITZ_OWN(ritz_matrix) m = {0}, read = {0}, again = {0};
+    RITZ_OWN(ritz_foreign) file = {0};
+    FILE *more = NULL;
+
+    make_matrix(720, &m);
+    assert_ok(ritz_output4_write("shares.op4", 1, &m, &style));
+    ritz_map_files();
+    ritz_set_threads(THREADS);
+    assert_ok(ritz_foreign_open("shares.op4", &file));
+    assert_non_null(file.mapped);
+    assert_ok(ritz_foreign_list(&file));
+    assert_ok(ritz_foreign_take(&file, 0, &read));
+    assert_memory_equal(read.A.val, m.A.val,
+                        (size_t)m.A.colptr[720] * sizeof *m.A.val);
+    more = fopen("shares.op4", "ab");
+    assert_non_null(more);
+    putc('x', more);
+    fclose(more);
+    assert_fails(ritz_foreign_take(&file, 0, &again), RITZ_ERR_FILE,
+                 "was changed while it was read");
+    remove("shares.op4");
+}
+
 /* 9 MiB: large enough that several threads read pieces of 4 MiB. */
 static void a_file_read_in_pieces_has_its_bytes_and_digest(void **state)
 {
@@ -275,6 +406,13 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test_teardown(threads_read_dmig_as_one_does, one_thread),
     cmocka_unit_test_teardown(
         strings_of_an_unmarked_file_are_read_as_one_thread_does, one_thread),
+    cmocka_unit_test_teardown(
+        zeros_and_nan_in_binary_are_read_as_one_thread_does, one_thread),
+    cmocka_unit_test_teardown(
+        lines_of_other_lengths_are_read_as_one_thread_does, one_thread),
+    cmocka_unit_test_teardown(threads_read_each_matrix_of_a_file, one_thread),
+    cmocka_unit_test_teardown(a_mapped_file_that_is_changed_is_refused,
+                              one_thread),
     cmocka_unit_test_teardown(a_file_read_in_pieces_has_its_bytes_and_digest,
                               one_thread),
 };
