@@ -2,9 +2,8 @@
  * Whole files read into memory, and the SHA-256 (by nettle) that names what was
  * read.
  *
- * Files are not mapped: if another program shortens a mapped file, reading it
- * kills the process by a signal. Several threads read a large file, each its
- * own pieces, straight into the buffer that is returned.
+ * Several threads read a large file, each its own pieces, straight into the
+ * buffer that is returned. Where a file need not be copied: base/mapped.h.
  */
 #define _XOPEN_SOURCE 700 /* NOLINT: declares pread */
 

@@ -16,20 +16,20 @@
 enum { SENTENCE = 4608 }; /* as much as ritz_error_message() has */
 
 /* What reading a file returned. */
-typedef struct outcome {
+typedef struct side_outcome {
     ritz_status status;
     char sentence[SENTENCE];
-} outcome;
+} side_outcome;
 
 struct ritz_side_files {
     const ritz_import_request *request;
     ritz_deck deck;
     ritz_row_names names;
-    outcome of_deck, of_names;
+    side_outcome of_deck, of_names;
     ritz_aside aside;
 };
 
-static void keep_outcome(ritz_status status, outcome *out)
+static void keep_outcome(ritz_status status, side_outcome *out)
 {
     out->status = status;
     if (status != RITZ_OK)
@@ -74,7 +74,7 @@ ritz_status ritz_side_files_begin(const ritz_import_request *request,
     return RITZ_OK;
 }
 
-static ritz_status tell_outcome(const outcome *of)
+static ritz_status tell_outcome(const side_outcome *of)
 {
     if (of->status != RITZ_OK)
         ritz_record("%s", of->sentence);
