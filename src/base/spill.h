@@ -1,11 +1,12 @@
 /* Memory whose contents are in a file for a while, so that something else can
- * use it. */
+ * use it, and files for what does not fit into memory. */
 #ifndef RITZ_BASE_SPILL_H
 #define RITZ_BASE_SPILL_H
 
 #include <ritz/base.h>
 
 #include <stddef.h>
+#include <stdint.h>
 
 /** Contents that are in a file; {0}: none are. */
 typedef struct ritz_spill {
@@ -23,7 +24,9 @@ typedef struct ritz_spill {
  * /var/tmp if there is none.
  *
  * @param[in]     what   begins the sentence of a failure, "the factor"
- * @param[in]     pages  anonymous memory of mmap(), whole pages
+ * @param[in]     pages  anonymous memory of mmap(), whole pages, which
+ *                       ritz_memory_count_mapped() has counted; not until they
+ *                       are read back
  * @param[in,out] out    empty; unchanged on failure, as the memory is
  * @return RITZ_ERR_FILE if the folder cannot be written to or has no room, or
  *         if its files are in memory (tmpfs)
@@ -36,9 +39,27 @@ ritz_status ritz_spill_put(const char *what, void *pages, size_t bytes,
  * Does nothing if @p spill is empty.
  *
  * @param[in,out] spill  emptied, but not on failure
- * @return RITZ_ERR_FILE
+ * @return RITZ_ERR_FILE; RITZ_ERR_MEMORY if the limit has no room for them now
  */
 ritz_status ritz_spill_fetch(ritz_spill *spill, void *pages);
+
+/**
+ * Open such a file for parts that are written and read in any order.
+ *
+ * @param[in]     what   as of ritz_spill_put()
+ * @param[in]     bytes  of all parts together
+ * @param[in,out] out    empty
+ * @return RITZ_ERR_FILE as ritz_spill_put()
+ */
+ritz_status ritz_spill_open(const char *what, size_t bytes, ritz_spill *out);
+
+/** Write a part, which begins at byte @p at. @return RITZ_ERR_FILE */
+ritz_status ritz_spill_write(const ritz_spill *spill, int64_t at, size_t bytes,
+                             const void *from);
+
+/** Read a part. @return RITZ_ERR_FILE */
+ritz_status ritz_spill_read(const ritz_spill *spill, int64_t at, size_t bytes,
+                            void *to);
 
 /** Delete the file; the contents are lost. */
 void ritz_spill_free(ritz_spill *spill);

@@ -29,6 +29,8 @@
 
 enum {
     SWEEPS = 3, /* of inverse iteration: one finds a lone small eigenvalue */
+    PAGES = 12 << 20,  /* bytes: buffers of the BLAS, and parts of huge pages
+                          that are held twice while L is packed, at most */
     LARGE = 128 << 20, /* bytes of L from which its packing has freed memory
                           returned first */
 };
@@ -212,6 +214,20 @@ static ritz_status report_failure(const cholesky *C, int64_t rows)
     return RITZ_OK;
 }
 
+/* L is packed while its pages are given back: it is held once. While it is made
+   there are also the largest update matrix and two copies of the lower triangle
+   of A. */
+static ritz_status admit_factor(const cholmod_factor *L, const ritz_sparse *A)
+{
+    const int64_t size = (int64_t)sizeof(double);
+    const int64_t kept = (int64_t)L->xsize * size;
+    const int64_t triangle = (A->colptr[A->ncol] + A->ncol) / 2;
+    const int64_t pages = kept / 2 < PAGES ? kept / 2 : PAGES;
+
+    return ritz_memory_admit_factor(
+        kept + (int64_t)L->maxcsize * size + 4 * size * triangle + pages, kept);
+}
+
 /* Find the pattern of L, with rows in the order `known`; NULL: find an order,
    too. For a small matrix CHOLMOD tries several orders and keeps the best. */
 static ritz_status analyse_sparse(cholesky *C, const ritz_sparse *A,
@@ -235,10 +251,7 @@ static ritz_status analyse_sparse(cholesky *C, const ritz_sparse *A,
     }
     C->L = cholmod_l_analyze_p(&view, order, NULL, 0, &C->common);
     RITZ_CHECK(report_failure(C, A->nrow));
-    /* L is packed while its pages are given back: it is held once */
-    return ritz_memory_admit(
-        "the factor",
-        (int64_t)((C->L->xsize + C->L->maxcsize) * sizeof(double)));
+    return admit_factor(C->L, A);
 }
 
 /* How a definite matrix is factored. */

@@ -238,26 +238,33 @@ static ritz_status run_job(mumps_factor *F, int job)
     return RITZ_OK;
 }
 
-/* About the bytes of a whole factor. CHOLMOD joins supernodes, and stores up to
-   half as much again as MUMPS counts. */
-static int64_t whole_factor(mumps_factor *F)
+/* About the bytes that CHOLMOD needs to factor the same matrix. It joins
+   supernodes, and stores up to half as much again as MUMPS counts; it also copies
+   the triangle twice (see factor.c). */
+static int64_t other_factor(mumps_factor *F)
 {
     const int64_t entries = FIELD(F, infog)[FACTOR_ENTRIES];
 
-    return 12 * (entries < 0 ? -1000000 * entries : entries);
+    return 12 * (entries < 0 ? -1000000 * entries : entries) + 32 * F->nnz;
 }
 
-/* Call the relief if a factor would not fit; refuse it if it still does not. */
+/* Call the relief if so many bytes would not fit; refuse them if they still do
+   not. */
+static ritz_status admit_bytes(mumps_factor *F, const char *what, int64_t bytes)
+{
+    if (F->relief.call && !ritz_memory_fits(bytes))
+        RITZ_CHECK(F->relief.call(F->relief.of));
+    return ritz_memory_admit(what, bytes);
+}
+
 static ritz_status admit_factor(mumps_factor *F)
 {
     const int64_t bytes = (int64_t)FIELD(F, infog)[MEGABYTES] * 1000000;
 
-    RITZ_REFUSE_IF(F->shared && !ritz_memory_fits(bytes + whole_factor(F)),
+    RITZ_REFUSE_IF(F->shared && !ritz_memory_fits(bytes + other_factor(F)),
                    RITZ_ERR_MEMORY, "memory does not hold two factors");
-    if (F->relief.call && !ritz_memory_fits(bytes))
-        RITZ_CHECK(F->relief.call(F->relief.of));
-    return ritz_memory_admit(
-        F->counted ? "the factor of a count" : "the factor", bytes);
+    return admit_bytes(F, F->counted ? "the factor of a count" : "the factor",
+                       bytes);
 }
 
 static ritz_status analyse_pattern(mumps_factor *F)
@@ -283,6 +290,10 @@ static ritz_status analyse_pattern(mumps_factor *F)
         FIELD(F, perm_in) = F->place;
     }
     FIELD(F, icntl)[DISCARD_FACTOR] = F->counted;
+    RITZ_CHECK(admit_bytes(F,
+                           F->counted ? "the pattern of the factor of a count"
+                                      : "the pattern of the factor",
+                           16 * F->nnz));
     RITZ_CHECK(run_job(F, ANALYSE));
     return admit_factor(F);
 }

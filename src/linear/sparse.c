@@ -1,5 +1,6 @@
 /* Sparse matrices: construction, submatrices, sums, transposes and symmetry. */
 #include "base/alloc.h"
+#include "base/memory.h"
 #include "base/search.h"
 #include "base/team.h"
 
@@ -10,7 +11,10 @@
 #include <stdbool.h>
 #include <string.h>
 
-enum { WORTHWHILE = 50000 }; /* entries from which one more thread is used */
+enum {
+    WORTHWHILE = 50000, /* entries from which one more thread is used */
+    ENTRY = sizeof(int64_t) + sizeof(double), /* bytes of an entry */
+};
 
 ritz_status ritz_sparse_new(int64_t nrow, int64_t ncol, int64_t nnz,
                             ritz_sparse *out)
@@ -19,6 +23,8 @@ ritz_status ritz_sparse_new(int64_t nrow, int64_t ncol, int64_t nnz,
 
     RITZ_REFUSE_IF(nrow < 0 || ncol < 0 || nnz < 0, RITZ_ERR_ARGUMENT,
                    "a matrix cannot be %" PRId64 " x %" PRId64, nrow, ncol);
+    if (nnz <= INT64_MAX / ENTRY)
+        RITZ_CHECK(ritz_memory_admit_array(ENTRY * nnz));
     RITZ_CHECK_NEW(A.colptr, ncol + 1);
     RITZ_CHECK_NEW(A.rowind, nnz);
     RITZ_CHECK_NEW(A.val, nnz);

@@ -2,6 +2,7 @@
 #include "linear/supernodal.h"
 
 #include "base/alloc.h"
+#include "base/memory.h"
 #include "base/spill.h"
 #include "base/team.h"
 #include "linear/tiles.h"
@@ -37,6 +38,7 @@ struct ritz_supernodal {
     int32_t *row;
     double *values; /* 64-byte aligned */
     size_t bytes;
+    bool packed;      /* they are set, and their memory counts as in use */
     ritz_spill spill; /* the values; {0}: they are in memory */
     double *sign;     /* of each pivot, NULL: all positive */
     int64_t num_top;  /* number of rows of the top */
@@ -435,6 +437,8 @@ static ritz_status pack_factor(const cholmod_factor *L, ritz_supernodal *S)
     RITZ_CHECK(map_values(S, values));
     RITZ_CHECK(place_blocks(S, &t, rows));
     ritz_team_run(S->threads, pack_part, &(packing){S, &t});
+    ritz_memory_count_mapped((int64_t)S->bytes);
+    S->packed = true;
     return RITZ_OK;
 }
 
@@ -693,6 +697,8 @@ void ritz_supernodal_free(ritz_supernodal **S)
         RITZ_FREE((*S)->crew[k].block, (*S)->crew[k].top, (*S)->crew[k].z);
     RITZ_FREE((*S)->block, (*S)->row, (*S)->top_row, (*S)->top, (*S)->shared,
               (*S)->crew, (*S)->sign);
+    if ((*S)->packed && (*S)->spill.bytes == 0)
+        ritz_memory_count_mapped(-(int64_t)(*S)->bytes);
     ritz_spill_free(&(*S)->spill);
     if ((*S)->values)
         munmap((*S)->values, (*S)->bytes);

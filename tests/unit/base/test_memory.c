@@ -3,12 +3,14 @@
 
 #include "lattice.h"
 
+#include "base/alloc.h"
 #include "base/memory.h"
 #include "linear/inertia.h"
 
 #include <ritz/matrix.h>
 
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const int64_t mebibyte = INT64_C(1) << 20;
@@ -45,6 +47,83 @@ static void the_number_needed_is_named(void **state)
                  "the basis needs 0.5 MiB of memory beside");
     assert_non_null(strstr(ritz_error_message(), "1 MiB are allowed"));
     assert_ok(ritz_memory_admit("the basis", mebibyte / 64 - 1));
+}
+
+/* What a refusal names as needed in all is enough. */
+static void the_number_named_is_enough(void **state)
+{
+    const int64_t bytes = 64 * mebibyte;
+    const char *all = NULL;
+    int64_t named = 0;
+
+    (void)state;
+    ritz_set_memory(mebibyte);
+    assert_fails(ritz_memory_admit("the basis", bytes), RITZ_ERR_MEMORY,
+                 "the basis needs 64 MiB of memory beside ");
+    all = strstr(ritz_error_message(), " in use, ");
+    assert_non_null(all);
+    named = strtoll(all + strlen(" in use, "), NULL, 10);
+    assert_true(named >= 64);
+    ritz_set_memory(named * mebibyte);
+    assert_ok(ritz_memory_admit("the basis", bytes));
+}
+
+/* Large arrays are compared with the limit where they are allocated, small ones
+   and those that were admitted before are not. */
+static void a_large_array_that_does_not_fit_is_refused(void **state)
+{
+    char *array = NULL;
+
+    (void)state;
+    ritz_set_memory(mebibyte);
+    ritz_monitor_step("the test", 0, 0);
+    assert_null(ritz_zalloc(8 * mebibyte, 1));
+    assert_non_null(strstr(ritz_error_message(),
+                           "an array (last step: the test) needs 8 MiB"));
+    assert_null(ritz_alloc(mebibyte, sizeof(double)));
+    array = ritz_alloc(mebibyte / 2, 1);
+    assert_non_null(array);
+    assert_fails(ritz_array_lengthen(&array, 4 * mebibyte, 1), RITZ_ERR_MEMORY,
+                 "are allowed (--memory)");
+    free(array);
+    array = ritz_alloc_admitted(8 * mebibyte, 1);
+    assert_non_null(array);
+    free(array);
+}
+
+/* What an array takes is in use before it is written. */
+static void an_array_counts_before_it_is_written(void **state)
+{
+    const int64_t before = ritz_memory_left();
+    char *array = ritz_zalloc(512 * mebibyte, 1);
+
+    (void)state;
+    assert_non_null(array);
+#ifndef __SANITIZE_ADDRESS__ /* has a malloc() of its own */
+    assert_true(before - ritz_memory_left() > 500 * mebibyte);
+#endif
+    free(array);
+}
+
+/* A factor is refused, too, if what follows it would be. */
+static void what_is_foreseen_is_needed(void **state)
+{
+    const ritz_foresight later = {.beside = 40 * mebibyte,
+                                  .after = 50 * mebibyte};
+    ritz_foresight before = {0};
+
+    (void)state;
+    ritz_set_memory(mebibyte);
+    assert_fails(ritz_memory_admit_factor(30 * mebibyte, 20 * mebibyte),
+                 RITZ_ERR_MEMORY, "the factor needs 30 MiB");
+    before = ritz_memory_foresee(later);
+    assert_int_equal(before.beside, 0);
+    assert_fails(ritz_memory_admit_factor(30 * mebibyte, 20 * mebibyte),
+                 RITZ_ERR_MEMORY,
+                 "the factor, with what follows, needs 60 MiB");
+    assert_fails(ritz_memory_admit_factor(30 * mebibyte, 0), RITZ_ERR_MEMORY,
+                 "the factor, with what follows, needs 50 MiB");
+    assert_int_equal(ritz_memory_foresee(before).after, later.after);
 }
 
 /* A factor of 12^3 rows has more than 100 000 entries. */
@@ -147,6 +226,11 @@ static void what_fits_has_the_same_bits(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test_teardown(the_usual_limit_is_part_of_the_machine, no_limit),
     cmocka_unit_test_teardown(the_number_needed_is_named, no_limit),
+    cmocka_unit_test_teardown(the_number_named_is_enough, no_limit),
+    cmocka_unit_test_teardown(a_large_array_that_does_not_fit_is_refused,
+                              no_limit),
+    cmocka_unit_test_teardown(an_array_counts_before_it_is_written, no_limit),
+    cmocka_unit_test_teardown(what_is_foreseen_is_needed, no_limit),
     cmocka_unit_test_teardown(a_factor_that_does_not_fit_is_refused, no_limit),
     cmocka_unit_test_teardown(a_count_that_does_not_fit_is_refused, no_limit),
     cmocka_unit_test_teardown(a_count_that_does_not_fit_calls_for_relief,
