@@ -13,7 +13,7 @@ enum { B = RITZ_BLOCK, SQUARE = RITZ_SQUARE };
 
 static int64_t block_bytes(const ritz_block_basis *b)
 {
-    return b->n * B * (int64_t)sizeof **b->V;
+    return b->n * B * (int64_t)sizeof *b->W;
 }
 
 ritz_status ritz_block_basis_new(int64_t room, ritz_block_basis *b)
@@ -26,55 +26,51 @@ ritz_status ritz_block_basis_new(int64_t room, ritz_block_basis *b)
     RITZ_CHECK_NEW(b->C, most * SQUARE);
     RITZ_CHECK(
         ritz_blocks_new(b->n, ritz_factor_threads(b->S->A), most, &b->on));
-    RITZ_CHECK_NEW(b->V, room + b->width);
-    b->room = room + b->width;
-    return RITZ_OK;
+    return ritz_block_list_new(b->n, room + b->width, &b->V);
 }
 
-ritz_status ritz_block_basis_admit(const ritz_block_basis *b)
+ritz_status ritz_block_basis_admit(ritz_block_basis *b,
+                                   const ritz_basis_needs *needs)
 {
+    const int64_t size = block_bytes(b);
+    const int64_t all = b->V.count * size + needs->meanwhile;
+    const int64_t few = needs->kept + 1 + RITZ_BLOCK_WINDOW;
+    const int64_t later = needs->kept * size + needs->afterwards;
+    int64_t least = few * size + needs->meanwhile;
+    int64_t held = 0;
+
+    least = least > later ? least : later;
     ritz_memory_return();
-    return ritz_memory_admit("the Lanczos basis", b->room * block_bytes(b));
+    if (ritz_memory_fits(all))
+        return RITZ_OK;
+    RITZ_CHECK(
+        ritz_memory_admit("the Lanczos basis", least < all ? least : all));
+    held = (ritz_memory_left() - needs->meanwhile) / size - RITZ_BLOCK_WINDOW;
+    held = held > 0 ? held : 0;
+    return held < b->V.count ? ritz_block_list_limit(&b->V, held) : RITZ_OK;
 }
 
 void ritz_block_basis_free(ritz_block_basis *b)
 {
     ritz_blocks_free(&b->on);
-    ritz_block_basis_shorten(b, 0);
-    RITZ_FREE(b->V, b->W, b->MW, b->C);
+    ritz_block_list_free(&b->V);
+    RITZ_FREE(b->W, b->MW, b->C);
 }
 
-void ritz_block_basis_shorten(ritz_block_basis *b, int64_t kept)
+ritz_status ritz_block_basis_move_step(ritz_block_basis *b, int64_t kept)
 {
-    for (int64_t j = kept; j < b->room; j++) {
-        free(b->V[j]);
-        b->V[j] = NULL;
-    }
-}
-
-void ritz_block_basis_move_step(ritz_block_basis *b, int64_t kept)
-{
-    for (int64_t q = 0; q < b->width; q++) {
-        double *other = b->V[kept + q];
-
-        b->V[kept + q] = b->V[b->blocks + q];
-        b->V[b->blocks + q] = other;
-    }
+    for (int64_t q = 0; q < b->width; q++)
+        RITZ_CHECK(ritz_block_list_move(&b->V, b->blocks + q, kept + q));
     b->blocks = kept + b->width;
+    return RITZ_OK;
 }
 
 /* V_j := a block of W: a copy of it, or W itself if it has no other block. */
 static ritz_status put_block(ritz_block_basis *b, int64_t j, double *W)
 {
-    if (!b->V[j])
-        RITZ_CHECK_RAW(b->V[j], b->n * B);
-    if (b->width > 1) {
-        memcpy(b->V[j], W, (size_t)block_bytes(b));
-        return RITZ_OK;
-    }
-    b->W = b->V[j];
-    b->V[j] = W;
-    return RITZ_OK;
+    if (b->width > 1)
+        return ritz_block_list_put(&b->V, j, false, &W);
+    return ritz_block_list_put(&b->V, j, true, &b->W);
 }
 
 static double *part_of(const ritz_block_basis *b, double *W, int64_t q)
@@ -94,18 +90,19 @@ void ritz_block_basis_multiply(const ritz_block_basis *b, double *X, double *Y)
         multiply_mass(b, part_of(b, X, q), part_of(b, Y, q));
 }
 
-void ritz_block_basis_project(const ritz_block_basis *b, int64_t first,
-                              int64_t count, int64_t width, const double *X)
+ritz_status ritz_block_basis_project(const ritz_block_basis *b, int64_t first,
+                                     int64_t count, int64_t width,
+                                     const double *X)
 {
-    ritz_blocks_project(&b->on, count, b->V + first, width, X, b->C);
+    return ritz_block_list_project(&b->V, &b->on, first, count, width, X, b->C);
 }
 
-void ritz_block_basis_subtract(const ritz_block_basis *b, int64_t first,
-                               int64_t count, int64_t width, double *X)
+ritz_status ritz_block_basis_subtract(const ritz_block_basis *b, int64_t first,
+                                      int64_t count, int64_t width, double *X)
 {
     for (int64_t i = 0; i < width * count * SQUARE; i++)
         b->C[i] = -b->C[i];
-    ritz_blocks_add(&b->on, count, b->V + first, width, b->C, X);
+    return ritz_block_list_add(&b->V, &b->on, first, count, width, b->C, X);
 }
 
 /* --- orthonormal blocks --------------------------------------------------- */
@@ -180,14 +177,15 @@ static void settle_columns(ritz_block_basis *b, double least, double *W,
 }
 
 /* X := X - V V'M X, in two passes, and MX := M X. */
-static void take_out_blocks(ritz_block_basis *b, double *X, double *MX)
+static ritz_status take_out_blocks(ritz_block_basis *b, double *X, double *MX)
 {
     for (int pass = 0; pass < 2; pass++) {
         multiply_mass(b, X, MX);
-        ritz_block_basis_project(b, 0, b->blocks, 1, MX);
-        ritz_block_basis_subtract(b, 0, b->blocks, 1, X);
+        RITZ_CHECK(ritz_block_basis_project(b, 0, b->blocks, 1, MX));
+        RITZ_CHECK(ritz_block_basis_subtract(b, 0, b->blocks, 1, X));
     }
     multiply_mass(b, X, MX);
+    return RITZ_OK;
 }
 
 /* W := A^-1 M times random vectors, and MW := M W. */
@@ -216,7 +214,7 @@ static ritz_status refill_block(ritz_block_basis *b, double *W, double *MW,
     RITZ_CHECK_COPY(MX, MW, b->n * B);
     start_block(b, W, MW);
     ritz_blocks_inner(&b->on, W, MW, G);
-    take_out_blocks(b, W, MW);
+    RITZ_CHECK(take_out_blocks(b, W, MW));
     for (int64_t i = 0; i < b->n * B; i++)
         if (settled[i % B]) {
             W[i] = X[i];
@@ -267,7 +265,7 @@ static ritz_status settle_one(ritz_block_basis *b, double size, double *W,
     for (int pass = 0; pass < 2; pass++) {
         if (count_settled(settled) < B)
             RITZ_CHECK(refill_block(b, W, MW, settled));
-        take_out_blocks(b, W, MW);
+        RITZ_CHECK(take_out_blocks(b, W, MW));
         settle_columns(b, RITZ_MOSTLY_LEFT, W, MW, settled, Q);
         ritz_square_multiply(Q, R);
     }
@@ -281,6 +279,34 @@ double *ritz_block_basis_square(const ritz_block_basis *b, double *R, int64_t p,
     return R + (p * b->width + q) * SQUARE;
 }
 
+/* Make block q of W orthogonal to the blocks of the same step before it, in two
+   passes. */
+static ritz_status take_out_step(ritz_block_basis *b, int64_t before, int64_t q,
+                                 double *R)
+{
+    double *W = part_of(b, b->W, q);
+    double *MW = part_of(b, b->MW, q);
+
+    for (int pass = 0; pass < 2 && q > 0; pass++) {
+        RITZ_CHECK(ritz_block_basis_project(b, before, q, 1, MW));
+        for (int64_t i = 0; i < q * SQUARE; i++)
+            ritz_block_basis_square(b, R, i / SQUARE, q)[i % SQUARE] += b->C[i];
+        RITZ_CHECK(ritz_block_basis_subtract(b, before, q, 1, W));
+        multiply_mass(b, W, MW);
+    }
+    return RITZ_OK;
+}
+
+/* Orthonormalise block q of W, and put it behind the blocks of V. */
+static ritz_status add_block(ritz_block_basis *b, double size, int64_t before,
+                             int64_t q, double *R, bool *none)
+{
+    RITZ_CHECK(take_out_step(b, before, q, R));
+    RITZ_CHECK(settle_one(b, size, part_of(b, b->W, q), part_of(b, b->MW, q),
+                          ritz_block_basis_square(b, R, q, q), none));
+    return put_block(b, b->blocks++, part_of(b, b->W, q));
+}
+
 ritz_status ritz_block_basis_orthonormalise(ritz_block_basis *b, double size,
                                             double *R, bool *exhausted)
 {
@@ -289,22 +315,9 @@ ritz_status ritz_block_basis_orthonormalise(ritz_block_basis *b, double size,
 
     memset(R, 0, (size_t)(b->width * b->width) * SQUARE * sizeof *R);
     for (int64_t q = 0; q < b->width && status == RITZ_OK; q++) {
-        double *W = part_of(b, b->W, q);
-        double *MW = part_of(b, b->MW, q);
         bool none = false;
 
-        for (int pass = 0; pass < 2 && q > 0; pass++) {
-            ritz_block_basis_project(b, before, q, 1, MW);
-            for (int64_t i = 0; i < q * SQUARE; i++)
-                ritz_block_basis_square(b, R, i / SQUARE, q)[i % SQUARE] +=
-                    b->C[i];
-            ritz_block_basis_subtract(b, before, q, 1, W);
-            multiply_mass(b, W, MW);
-        }
-        status = settle_one(b, size, W, MW, ritz_block_basis_square(b, R, q, q),
-                            &none);
-        if (status == RITZ_OK)
-            status = put_block(b, b->blocks++, W);
+        status = add_block(b, size, before, q, R, &none);
         if (q == 0)
             *exhausted = none;
     }

@@ -6,6 +6,7 @@
 #ifndef RITZ_LINEAR_BLOCK_BASIS_H
 #define RITZ_LINEAR_BLOCK_BASIS_H
 
+#include "linear/block_list.h"
 #include "linear/blocks.h"
 #include "linear/general.h"
 
@@ -22,8 +23,7 @@ typedef struct ritz_block_basis {
     int64_t width;  /* blocks of a step, 1 or 2 */
     uint64_t noise; /* state of random vectors */
     int64_t blocks; /* of V, without those of the next step */
-    int64_t room;   /* of the list V, whose other members are NULL */
-    double **V;
+    ritz_block_list V;
     double *W;  /* width blocks, one after the other: the next step */
     double *MW; /* M times them; when W is put behind V, M times that */
     double *C;  /* 8 x 8 coefficients for each block of V and of W */
@@ -42,19 +42,31 @@ typedef struct ritz_block_basis {
  */
 ritz_status ritz_block_basis_new(int64_t room, ritz_block_basis *b);
 
-/** RITZ_ERR_MEMORY if all blocks of V would exceed the limit of memory. Memory
- * that was freed before is returned, as blocks of V may not fill it. */
-ritz_status ritz_block_basis_admit(const ritz_block_basis *b);
+/** What memory must hold beside the blocks of V. */
+typedef struct ritz_basis_needs {
+    int64_t kept;       /* blocks of V that are left at the end */
+    int64_t meanwhile;  /* bytes for other things during the iteration */
+    int64_t afterwards; /* bytes for other things beside the blocks kept */
+} ritz_basis_needs;
+
+/**
+ * Compare the blocks of V with the limit of memory. Those that would exceed it
+ * will be in a file. Memory that was freed before is returned, as blocks of V
+ * may not fill it.
+ *
+ * @return RITZ_ERR_MEMORY if less than that must be in memory does not fit, which
+ *         is the blocks kept, one more, and RITZ_BLOCK_WINDOW of the file;
+ *         RITZ_ERR_FILE
+ */
+ritz_status ritz_block_basis_admit(ritz_block_basis *b,
+                                   const ritz_basis_needs *needs);
 
 void ritz_block_basis_free(ritz_block_basis *b);
 
-/** Free the blocks of V from @p kept on. */
-void ritz_block_basis_shorten(ritz_block_basis *b, int64_t kept);
-
 /** Let the step behind the blocks of V, which b->blocks does not count yet,
  * follow the first @p kept blocks; the others are no longer counted, and what
- * they hold is void. */
-void ritz_block_basis_move_step(ritz_block_basis *b, int64_t kept);
+ * they hold is void. @return RITZ_ERR_FILE */
+ritz_status ritz_block_basis_move_step(ritz_block_basis *b, int64_t kept);
 
 /** V := one step of random vectors, multiplied by A^-1 M and orthonormalised.
  * @param[out] exhausted  the range of A^-1 M is empty */
@@ -64,13 +76,15 @@ ritz_status ritz_block_basis_begin(ritz_block_basis *b, bool *exhausted);
 void ritz_block_basis_multiply(const ritz_block_basis *b, double *X, double *Y);
 
 /** b->C := V'X for blocks [first, first + count) of V and @p width blocks of X,
- * in the order of ritz_blocks_project(). */
-void ritz_block_basis_project(const ritz_block_basis *b, int64_t first,
-                              int64_t count, int64_t width, const double *X);
+ * in the order of ritz_blocks_project(). @return RITZ_ERR_FILE */
+ritz_status ritz_block_basis_project(const ritz_block_basis *b, int64_t first,
+                                     int64_t count, int64_t width,
+                                     const double *X);
 
-/** X -= V b->C with the same blocks; b->C changes its sign. */
-void ritz_block_basis_subtract(const ritz_block_basis *b, int64_t first,
-                               int64_t count, int64_t width, double *X);
+/** X -= V b->C with the same blocks; b->C changes its sign.
+ * @return RITZ_ERR_FILE */
+ritz_status ritz_block_basis_subtract(const ritz_block_basis *b, int64_t first,
+                                      int64_t count, int64_t width, double *X);
 
 /** Where the 8 x 8 block R_pq of the R of a step is: W_q = sum over p of Q_p R_pq
  * (ritz_block_basis_orthonormalise()). */
@@ -89,7 +103,7 @@ double *ritz_block_basis_square(const ritz_block_basis *b, double *R, int64_t p,
  *                        of replaced vectors are zero
  * @param[out] exhausted  no direction was left for any vector of the first
  *                        block
- * @return RITZ_ERR_MEMORY
+ * @return RITZ_ERR_MEMORY; RITZ_ERR_FILE
  */
 ritz_status ritz_block_basis_orthonormalise(ritz_block_basis *b, double size,
                                             double *R, bool *exhausted);

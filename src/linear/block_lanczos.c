@@ -46,17 +46,32 @@ static void block_lanczos_free(block_lanczos *L)
     RITZ_FREE(L->both, L->T, L->Z, L->theta, L->rank);
 }
 
-static ritz_status allocate_lanczos(block_lanczos *L, int64_t room)
+/* Blocks of eight that each step adds. */
+static int64_t width_of(const ritz_lanczos_plan *plan)
+{
+    const int64_t usual = plan->k < MANY ? 1 : WIDEST;
+
+    return plan->width > 0 ? plan->width : usual;
+}
+
+/* Blocks of V for n rows, a multiple of the width. */
+static int64_t room_of(const ritz_lanczos_plan *plan, int64_t n)
+{
+    const int64_t width = width_of(plan);
+    const int64_t most = (n + B - 1) / B;
+    int64_t room = plan->room > 0 ? plan->room / B
+                                  : (4 * plan->k + B - 1) / B + MORE_BLOCKS;
+
+    room = room < most ? room : most;
+    return (room + width - 1) / width * width;
+}
+
+static ritz_status allocate_lanczos(block_lanczos *L)
 {
     const int64_t n = L->b.n;
     const int64_t width = L->b.width;
-    const int64_t most = (n + B - 1) / B;
-    int64_t order = 0;
+    const int64_t order = L->room * B;
 
-    L->room = room > 0 ? room / B : (4 * L->k + B - 1) / B + MORE_BLOCKS;
-    L->room = L->room < most ? L->room : most;
-    L->room = (L->room + width - 1) / width * width;
-    order = L->room * B;
     RITZ_REFUSE_IF(order > INT_MAX / 8, RITZ_ERR_ARGUMENT,
                    "%" PRId64 " modes of %" PRId64
                    " dofs are more than can be found",
@@ -150,7 +165,7 @@ static void put_diagonal(block_lanczos *L, int64_t j, const double *A)
  *
  * @param[out] size  norm of the coefficients that were subtracted
  */
-static void expand_space(block_lanczos *L, double *size)
+static ritz_status expand_space(block_lanczos *L, double *size)
 {
     const int64_t w = L->b.width;
     const int64_t j = L->b.blocks - w;
@@ -161,21 +176,23 @@ static void expand_space(block_lanczos *L, double *size)
     memcpy(L->b.W, L->b.MW, (size_t)(w * L->b.n * B) * sizeof *L->b.W);
     solve_step(L, L->b.W);
     *size = take_coupling(L, j);
-    ritz_block_basis_subtract(&L->b, L->coupled, j - L->coupled, w, L->b.W);
+    RITZ_CHECK(ritz_block_basis_subtract(&L->b, L->coupled, j - L->coupled, w,
+                                         L->b.W));
     ritz_blocks_project(&L->b.on, w, MV, w, L->b.W, L->b.C);
     memcpy(A, L->b.C, (size_t)(w * w) * SQUARE * sizeof *A);
-    ritz_block_basis_subtract(&L->b, j, w, w, L->b.W);
+    RITZ_CHECK(ritz_block_basis_subtract(&L->b, j, w, w, L->b.W));
     ritz_block_basis_multiply(&L->b, L->b.W, L->b.MW);
-    ritz_block_basis_project(&L->b, 0, L->b.blocks, w, L->b.MW);
+    RITZ_CHECK(ritz_block_basis_project(&L->b, 0, L->b.blocks, w, L->b.MW));
     for (int64_t i = 0; i < w * w * SQUARE; i++) {
         const int64_t q = i / (w * SQUARE);
 
         A[i] += L->b.C[(q * L->b.blocks + j) * SQUARE + i % (w * SQUARE)];
         *size = hypot(*size, A[i]);
     }
-    ritz_block_basis_subtract(&L->b, 0, L->b.blocks, w, L->b.W);
+    RITZ_CHECK(ritz_block_basis_subtract(&L->b, 0, L->b.blocks, w, L->b.W));
     ritz_block_basis_multiply(&L->b, L->b.W, L->b.MW);
     put_diagonal(L, j, A);
+    return RITZ_OK;
 }
 
 /* Rank the eigenvalues theta of T by magnitude, the largest first. Theta of an
@@ -305,8 +322,8 @@ static ritz_status combine_basis(block_lanczos *L, const ritz_dense *U)
     for (int64_t c = 0; c < U->ncol; c++)
         for (int64_t i = 0; i < U->nrow; i++)
             C[c / B * part + i * B + c % B] = U->val[i + c * U->nrow];
-    ritz_blocks_combine(&L->b.on, U->nrow / B, kept, part, C, room, L->b.V);
-    return RITZ_OK;
+    return ritz_block_list_combine(&L->b.V, &L->b.on, U->nrow / B, kept, part,
+                                   C, room);
 }
 
 /*
@@ -360,16 +377,24 @@ static ritz_status extract_vectors(block_lanczos *L, const ritz_dense *U,
     const int64_t last = (count + B - 1) / B;
 
     RITZ_CHECK(combine_basis(L, U));
-    ritz_block_basis_shorten(&L->b, last);
+    ritz_block_list_shorten(&L->b.V, last);
     ritz_memory_return(); /* X does not fit between the blocks that are left */
-    RITZ_CHECK(ritz_dense_new(L->b.n, count, X));
+    X->val = ritz_alloc_admitted(L->b.n * count, sizeof *X->val);
+    if (!X->val)
+        return RITZ_ERR_MEMORY;
+    X->nrow = L->b.n;
+    X->ncol = count;
     for (int64_t j = last; j-- > 0;) {
         const int64_t width = count - j * B < B ? count - j * B : B;
+        const double *V = NULL;
 
+        RITZ_CHECK(ritz_block_list_look(&L->b.V, j, &V));
         for (int64_t i = 0; i < L->b.n; i++)
             for (int64_t k = 0; k < width; k++)
-                X->val[order[i] + (j * B + k) * L->b.n] = L->b.V[j][i * B + k];
-        ritz_block_basis_shorten(&L->b, j);
+                X->val[order[i] + (j * B + k) * L->b.n] = V[i * B + k];
+        ritz_block_list_shorten(&L->b.V, j);
+        if (L->b.V.held < L->b.V.count)
+            ritz_memory_return();
     }
     return RITZ_OK;
 }
@@ -408,10 +433,9 @@ static ritz_status restart_space(block_lanczos *L, const double *R)
             L->T[c + (kept * B + i) * ld] = q[i];
         }
     }
-    ritz_block_basis_move_step(&L->b, kept);
     L->coupled = 0;
     L->restarted = true;
-    return RITZ_OK;
+    return ritz_block_basis_move_step(&L->b, kept);
 }
 
 /* Whether to look for converged pairs, which costs an eigensolution of T: once
@@ -531,7 +555,7 @@ static ritz_status iterate_blocks(block_lanczos *L, double *R, int64_t *found,
 
     for (;;) {
         ritz_monitor_step("eigenvectors", ++steps, 0);
-        expand_space(L, &size);
+        RITZ_CHECK(expand_space(L, &size));
         RITZ_CHECK(ritz_block_basis_orthonormalise(&L->b, size, R, &exhausted));
         look = exhausted || is_time_to_look(L, next);
         if (look && !exhausted && is_band(L))
@@ -569,6 +593,46 @@ static double eigenvalue_at(const block_lanczos *L, int64_t c)
     return fabs(theta) > RITZ_NO_DIRECTION * fabs(L->theta[L->rank[0]])
                ? L->b.S->sigma + 1.0 / theta
                : HUGE_VAL;
+}
+
+/* --- memory --------------------------------------------------------------- */
+
+/* Blocks of the vectors that are found, about. */
+static int64_t blocks_found(int64_t k)
+{
+    return (k + SPARES + B - 1) / B;
+}
+
+/* Bytes that the iteration needs for a while: LAPACK's workspace for T, the
+   coefficients of vectors and of products by each thread, and two blocks. */
+static int64_t bytes_for_a_while(int64_t n, int64_t k, int64_t room)
+{
+    enum { THREADS = 4 }; /* more make little difference */
+    const int64_t order = room * B;
+    const int64_t coefficients = 2 * (order + WIDEST * B) * (k + SPARES) +
+                                 (1 + THREADS) * WIDEST * room * SQUARE;
+
+    return (int64_t)sizeof(double) *
+           (order * (2 * order + 9) + coefficients + 2 * n * B);
+}
+
+int64_t ritz_block_lanczos_needs(const ritz_shifted *S, int64_t k, bool folded)
+{
+    const ritz_lanczos_plan plan = {.k = k};
+    const int64_t n = S->K->nrow;
+    const int64_t room = room_of(&plan, n);
+    const int64_t order = room * B;
+    const int64_t width = width_of(&plan);
+    const int64_t few = blocks_found(k) + 1 + RITZ_BLOCK_WINDOW;
+    const int64_t blocks = (few < room ? few : room) + (width + 1) * width;
+    const int64_t entries = S->M->colptr[n];
+    int64_t bytes =
+        (int64_t)sizeof(double) * (blocks * n * B + 2 * order * order) +
+        bytes_for_a_while(n, k, room) + 12 * entries;
+
+    if (folded)
+        bytes -= ritz_folded_saves(n, S->K->colptr[n]) + 16 * entries;
+    return bytes > 0 ? bytes : 0;
 }
 
 /* What there is of K and M during the iteration. */
@@ -614,20 +678,46 @@ static ritz_status open_pencil(const ritz_shifted *S,
     return ritz_folded_open(&P->M, plan->fold[1]);
 }
 
+/* Bytes by which K and M grow when the iteration has ended. */
+static int64_t bytes_to_open(const lanczos_pencil *P)
+{
+    const int64_t n = P->rows.n;
+    int64_t bytes = P->freed ? 16 * P->rows.start[n] : 0;
+
+    if (P->K.colptr)
+        bytes += ritz_folded_saves(n, P->K.colptr[n]);
+    if (P->M.colptr)
+        bytes += ritz_folded_saves(n, P->M.colptr[n]);
+    return bytes;
+}
+
+/* Decide how many blocks of V memory holds. */
+static ritz_status admit_blocks(block_lanczos *L, const lanczos_pencil *P)
+{
+    const ritz_basis_needs needs = {
+        /* on either side of a shift more may be found than requested */
+        .kept = blocks_found(L->b.S->below > 0 ? 2 * L->k : L->k),
+        .meanwhile = bytes_for_a_while(L->b.n, L->k, L->room),
+        .afterwards = bytes_to_open(P),
+    };
+
+    return ritz_block_basis_admit(&L->b, &needs);
+}
+
 /* ritz_block_lanczos() with the matrices that may be folded. */
 static ritz_status find_pairs(const ritz_shifted *S, ritz_lanczos_plan *plan,
                               lanczos_pencil *P, ritz_dense *X, double **lambda,
                               ritz_lanczos_end *end)
 {
-    const int64_t width = plan->k < MANY ? 1 : WIDEST;
     RITZ_OWN(block_lanczos)
     L = {
         .b = {.S = S,
               .n = P->rows.n,
-              .width = plan->width > 0 ? plan->width : width,
+              .width = width_of(plan),
               .noise = 1998,
               .M = &P->rows},
         .k = plan->k,
+        .room = room_of(plan, P->rows.n),
         .settled = plan->settled > 0.0 ? plan->settled : RITZ_LANCZOS_SETTLED,
     };
     RITZ_OWN(ritz_dense) U = {0};
@@ -636,9 +726,9 @@ static ritz_status find_pairs(const ritz_shifted *S, ritz_lanczos_plan *plan,
     int64_t found = 0;
     bool exhausted = false;
 
-    RITZ_CHECK(allocate_lanczos(&L, plan->room));
     RITZ_CHECK(fold_pencil(plan, P));
-    RITZ_CHECK(ritz_block_basis_admit(&L.b));
+    RITZ_CHECK(allocate_lanczos(&L));
+    RITZ_CHECK(admit_blocks(&L, P));
     RITZ_CHECK(ritz_block_basis_begin(&L.b, &exhausted));
     *end = RITZ_LANCZOS_EXHAUSTED;
     if (exhausted)

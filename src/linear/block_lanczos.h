@@ -67,12 +67,21 @@ typedef struct ritz_lanczos_plan {
  *                        small for one; EXHAUSTED if there are fewer than k
  *                        finite eigenvalues, or fewer than S->below below sigma
  * @return RITZ_ERR_MEMORY; RITZ_ERR_ARGUMENT if k is too large for LAPACK;
- *         RITZ_ERR_CONVERGENCE if LAPACK fails
+ *         RITZ_ERR_CONVERGENCE if LAPACK fails; RITZ_ERR_FILE if basis vectors
+ *         that do not fit into memory cannot be in a file either
  * @cost   about 3 k / 8 solves of a block, or half as many of two blocks, and
- *         4 k vectors of memory
+ *         4 k vectors of memory, or k + 40 of memory and the others of a file
  */
 ritz_status ritz_block_lanczos(const ritz_shifted *S, ritz_lanczos_plan *plan,
                                ritz_dense *X, double **lambda,
                                ritz_lanczos_end *end);
+
+/**
+ * Bytes that a search for @p k pairs needs beside the factor at least: with most
+ * of its basis in a file. S->A is not used.
+ *
+ * @param[in] folded  whether K and M may be folded
+ */
+int64_t ritz_block_lanczos_needs(const ritz_shifted *S, int64_t k, bool folded);
 
 #endif

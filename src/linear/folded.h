@@ -38,4 +38,10 @@ ritz_status ritz_folded_open(ritz_folded *F, ritz_sparse *A);
 
 void ritz_folded_free(ritz_folded *F);
 
+/** Bytes by which a matrix of so many entries is smaller while it is folded. */
+static inline int64_t ritz_folded_saves(int64_t n, int64_t entries)
+{
+    return 16 * entries - 12 * (entries + n) / 2;
+}
+
 #endif

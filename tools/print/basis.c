@@ -225,6 +225,15 @@ static void warn_of_pair(cli_run *run, const ritz_basis *basis)
         cli_warn(run, "%.*s%s", (int)(end - basis->remark), basis->remark, cut);
 }
 
+/* The largest file of numbers beside the output, if there was one. */
+static void describe_disk(cli_run *run)
+{
+    if (ritz_disk_used() > 0)
+        sink_field(run, "disk", "disk_bytes",
+                   "%ld bytes in '%s' held what memory did not",
+                   ritz_disk_used(), ritz_disk_folder());
+}
+
 ritz_status basis_run(cli_run *run, basis_options *given)
 {
     const char *path = run->operand[1];
@@ -257,6 +266,7 @@ ritz_status basis_run(cli_run *run, basis_options *given)
            sizeof made.basis.units);
     sign_configuration(&m, &made.basis.origin);
     RITZ_CHECK(describe_output(run, &made));
+    describe_disk(run);
     say_basis(run, &made.basis);
     warn_of_split(run, &made.basis, request->modes, request->tolerance);
     warn_of_pair(run, &made.basis);
@@ -382,10 +392,7 @@ static ritz_status reduce_to_matrices(cli_run *run, const model *full,
     if (given->without_basis)
         drop_basis(reduced);
     RITZ_CHECK(describe_output(run, &made));
-    if (ritz_disk_used() > 0)
-        sink_field(run, "disk", "disk_bytes",
-                   "%ld bytes in '%s' held the factor while modes were counted",
-                   ritz_disk_used(), ritz_disk_folder());
+    describe_disk(run);
     sink_set(run, "vectors", "%ld", c->count);
     SINK_EACH(run, "residuals", k, c->count)
         if (!isnan(c->residual[k]))

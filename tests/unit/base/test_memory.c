@@ -223,6 +223,47 @@ static void what_fits_has_the_same_bits(void **state)
                  "are allowed (--memory)");
 }
 
+/* A search for so many pairs of a lattice, with a limit. */
+static ritz_status search_within(const ritz_sparse *K, const ritz_sparse *M,
+                                 int64_t limit, ritz_pairs *out)
+{
+    const ritz_span span = {.modes = 40, .uncounted = true};
+
+    ritz_set_memory(limit);
+    return ritz_eigen_sparse(K, M, &span, out);
+}
+
+/* With the smallest limit that is not refused, a part of the basis is on disk;
+   with no limit, none. The bits are the same. */
+static void a_basis_on_disk_has_the_same_bits(void **state)
+{
+    const int64_t step = 2 * mebibyte;
+    RITZ_OWN(ritz_sparse) K = {0}, M = {0};
+    RITZ_OWN(ritz_pairs) free = {0}, limited = {0};
+    int64_t limit = 0;
+
+    (void)state;
+    unsetenv("TMPDIR"); /* the user's may be in memory */
+    lattice_new(20, 1.0, &K, &M);
+    assert_ok(search_within(&K, &M, 0, &free));
+    limit = ritz_memory_limit() - ritz_memory_left();
+    for (int k = 0; k < 200 && !limited.Phi.val; k++) {
+        limit += step;
+        if (search_within(&K, &M, limit, &limited) != RITZ_OK)
+            assert_non_null(
+                strstr(ritz_error_message(), "are allowed (--memory)"));
+    }
+    assert_int_equal(limited.Phi.ncol, free.Phi.ncol);
+    assert_memory_equal(free.Phi.val, limited.Phi.val,
+                        (size_t)(free.Phi.nrow * free.Phi.ncol) *
+                            sizeof *free.Phi.val);
+    assert_memory_equal(free.lambda, limited.lambda,
+                        (size_t)free.Phi.ncol * sizeof *free.lambda);
+#ifndef __SANITIZE_ADDRESS__ /* keeps freed memory, of each refused search */
+    assert_true(ritz_disk_used() > 0);
+#endif
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test_teardown(the_usual_limit_is_part_of_the_machine, no_limit),
     cmocka_unit_test_teardown(the_number_needed_is_named, no_limit),
@@ -236,6 +277,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test_teardown(a_count_that_does_not_fit_calls_for_relief,
                               no_limit),
     cmocka_unit_test_teardown(what_fits_has_the_same_bits, no_limit),
+    cmocka_unit_test_teardown(a_basis_on_disk_has_the_same_bits, no_limit),
 };
 
 TEST_MODULE(memory, tests, NULL, NULL)
