@@ -28,7 +28,7 @@ enum {
                            those of input files that are mapped [bytes] */
     OTHER = 2 << 20,    /* stacks, and buffers of the BLAS  [bytes] */
     SLACK_PART = 100,   /* the memory named in a refusal is larger by this part,
-                           as what is in use varies from run to run */
+                           and by 1 MiB, as what is in use varies */
 };
 
 void ritz_set_memory(int64_t bytes)
@@ -158,7 +158,7 @@ static const char *name_size(int64_t bytes, char out[32])
 static const char *name_enough(int64_t bytes, char out[32])
 {
     const double size = (double)bytes * (1.0 + 1.0 / SLACK_PART);
-    const double mib = ceil(size / 1048576.0);
+    const double mib = ceil(size / 1048576.0) + 1.0;
 
     if (mib < 1024.0)
         snprintf(out, 32, "%.0f MiB", mib);

@@ -21,6 +21,7 @@
  * substructures for dynamic analyses, AIAA Journal 6 (1968) 1313-1319.
  */
 #include "base/alloc.h"
+#include "base/memory.h"
 #include "base/tolerances.h"
 #include "bases/interior_statics.h"
 
@@ -144,6 +145,39 @@ static ritz_status find_interior(static_task *t, ritz_pairs *modes)
     return find_statics(t, s->L);
 }
 
+/* What the factor of K_ii is followed by: the search for modes, as far as their
+   number is known, or the columns of both kinds, and then the basis without the
+   factor. Static vectors are left out. */
+static ritz_foresight foresee_basis(const ritz_request *request,
+                                    const ritz_partition *s)
+{
+    const int64_t size = (int64_t)sizeof(double);
+    const int64_t b = s->b->count;
+    const int64_t modes = request->modes > 0 ? request->modes : 0;
+    const int64_t Psi = size * s->i.count * b;
+    const int64_t Phi = size * s->i.count * modes;
+    const ritz_span span = ritz_request_span(request);
+    int64_t search = 0;
+
+    if (modes > 0)
+        search = ritz_eigen_factored_needs(&s->K_ii, &s->M_ii, &span) +
+                 (keeps_factor(request) ? 0 : Psi);
+    return (ritz_foresight){
+        .beside = Psi + Phi > search ? Psi + Phi : search,
+        .after = Psi + Phi + size * s->component->num_dofs * (b + modes)};
+}
+
+static ritz_status factor_interior(const ritz_request *request,
+                                   ritz_partition *s)
+{
+    const ritz_foresight before =
+        ritz_memory_foresee(foresee_basis(request, s));
+    const ritz_status status = ritz_partition_factor(s);
+
+    (void)ritz_memory_foresee(before);
+    return status;
+}
+
 /* @param[in] usual  kinds of loads with static vectors, if none are
    requested */
 static ritz_status make_fixed(const ritz_request *request, int usual,
@@ -155,7 +189,7 @@ static ritz_status make_fixed(const ritz_request *request, int usual,
 
     RITZ_CHECK(
         ritz_partition_split(request, ritz_partition_may_take(request), &s));
-    RITZ_CHECK(ritz_partition_factor(&s));
+    RITZ_CHECK(factor_interior(request, &s));
     RITZ_CHECK_IN("static vectors", ritz_interior_statics_collect(
                                         request, &s, usual, &t.statics));
     RITZ_CHECK(find_interior(&t, &modes));

@@ -20,6 +20,7 @@
  * them.
  */
 #include "base/alloc.h"
+#include "base/memory.h"
 #include "base/tolerances.h"
 #include "estimate/estimator.h"
 #include "linear/factor.h"
@@ -558,6 +559,43 @@ static ritz_status skip_rounded_rigid(ritz_measuring *m)
     return RITZ_OK;
 }
 
+/* What the factor is followed by: solutions for the trial of m vectors, and then
+   an inverse iteration of it, or the bounder of responses with its V and E. */
+static ritz_foresight foresee_estimates(const ritz_measuring *m, bool response)
+{
+    const ritz_io *io = &m->estimator->component->io;
+    const int64_t count = m->trial.count;
+    const int64_t bounder =
+        3 * count + 2 * (io->num_inputs + 3 * io->num_outputs);
+    const int64_t columns = 4 * count;
+
+    return (ritz_foresight){
+        .beside = (int64_t)sizeof(double) * m->estimator->component->num_dofs *
+                  (response && bounder > columns ? bounder : columns)};
+}
+
+/* X and R of the trial, what they are made of, and K - sigma M. */
+static ritz_status admit_trial(const ritz_measuring *m, int64_t count)
+{
+    enum { ENTRY = sizeof(int64_t) + sizeof(double) };
+    const ritz_component *full = m->estimator->component;
+    const int64_t column = full->num_dofs * (int64_t)sizeof(double);
+
+    return ritz_memory_admit("the trial space of estimates",
+                             3 * count * column +
+                                 ENTRY * full->K.colptr[full->num_dofs]);
+}
+
+static ritz_status factor_trial(ritz_measuring *m, bool response, double rho)
+{
+    const ritz_foresight before =
+        ritz_memory_foresee(foresee_estimates(m, response));
+    const ritz_status status = ritz_estimator_factor(m->estimator, rho);
+
+    (void)ritz_memory_foresee(before);
+    return status;
+}
+
 /*
  * The trial, and the factor if it is not there yet. That is made after the
  * pairs: they tell where the first count is needed, which is then taken at the
@@ -574,6 +612,7 @@ static ritz_status open_trial(const ritz_basis *basis,
     if (!estimator->A)
         estimator->sigma =
             -RITZ_ESTIMATE_SHIFT * ritz_eigen_lambda(m->band_hz[1]);
+    RITZ_CHECK(estimator->A ? RITZ_OK : admit_trial(m, count));
     for (;;) {
         double rho = nan(""); /* where modes are counted first */
 
@@ -583,7 +622,7 @@ static ritz_status open_trial(const ritz_basis *basis,
             rho = propose_behind(m, m->last);
         if (is_known(m, rho, &below))
             rho = nan("");
-        RITZ_CHECK(ritz_estimator_factor(estimator, rho));
+        RITZ_CHECK(factor_trial(m, response, rho));
         if (m->trial.sigma == estimator->sigma)
             return ritz_lehmann_solve(estimator->A, &m->trial);
         ritz_lehmann_free(&m->trial);

@@ -207,7 +207,8 @@ static ritz_status plan_fronts(amls *a, int64_t leaf, bool *wide)
 /*
  * Numbers held at a time, about, if fronts are eliminated one after the other
  * and keep modes in proportion to their rows: by a front and what its subtree
- * leaves to it, then by the reduced matrix, and by the vectors.
+ * leaves to it, then by the reduced matrix, by the vectors, and by the inverse
+ * iteration of X, M X and A^-1 M X that follows.
  */
 static double predict_numbers(const amls *a, int64_t k)
 {
@@ -237,7 +238,8 @@ static double predict_numbers(const amls *a, int64_t k)
                            part * (double)(first[c] - first[a->tree.begin[c]]));
             }
     }
-    return fmax(most, held + order * (order + 3.0 * found) + rows * found);
+    most = fmax(most, held + order * (order + 3.0 * found) + rows * found);
+    return fmax(most, 3.0 * rows * found);
 }
 
 /* --- elimination ---------------------------------------------------------- */

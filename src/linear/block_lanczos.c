@@ -8,6 +8,7 @@
 #include "linear/block_basis.h"
 #include "linear/factor.h"
 #include "linear/folded.h"
+#include "linear/lanczos_room.h"
 
 #include <inttypes.h>
 #include <lapacke.h>
@@ -19,11 +20,8 @@ enum {
     B = RITZ_BLOCK,
     SQUARE = RITZ_SQUARE,
     WIDEST = RITZ_STEP_WIDEST,
-    MORE_BLOCKS = 12, /* room in addition to 4 k vectors, for small k */
     RESTARTS = 40,
     ALONE = 600, /* order of T up to which LAPACK is fastest on one thread */
-    SPARES = 8,  /* converged pairs returned in addition to the k requested */
-    MANY = 100,  /* pairs from which steps of two blocks are faster */
 };
 
 typedef struct block_lanczos {
@@ -44,26 +42,6 @@ static void block_lanczos_free(block_lanczos *L)
 {
     ritz_block_basis_free(&L->b);
     RITZ_FREE(L->both, L->T, L->Z, L->theta, L->rank);
-}
-
-/* Blocks of eight that each step adds. */
-static int64_t width_of(const ritz_lanczos_plan *plan)
-{
-    const int64_t usual = plan->k < MANY ? 1 : WIDEST;
-
-    return plan->width > 0 ? plan->width : usual;
-}
-
-/* Blocks of V for n rows, a multiple of the width. */
-static int64_t room_of(const ritz_lanczos_plan *plan, int64_t n)
-{
-    const int64_t width = width_of(plan);
-    const int64_t most = (n + B - 1) / B;
-    int64_t room = plan->room > 0 ? plan->room / B
-                                  : (4 * plan->k + B - 1) / B + MORE_BLOCKS;
-
-    room = room < most ? room : most;
-    return (room + width - 1) / width * width;
 }
 
 static ritz_status allocate_lanczos(block_lanczos *L)
@@ -562,8 +540,11 @@ static ritz_status iterate_blocks(block_lanczos *L, double *R, int64_t *found,
             RITZ_CHECK(test_kth(L, R, &look));
         if (look) {
             RITZ_CHECK(solve_projected(L));
-            *found = count_converged(
-                L, L->b.S->below > 0 ? L->b.blocks * B : L->k + SPARES, R);
+            *found =
+                count_converged(L,
+                                L->b.S->below > 0 ? L->b.blocks * B
+                                                  : L->k + RITZ_LANCZOS_SPARES,
+                                R);
             next = next_look(L, *found);
             *end = exhausted && !is_enough(L, *found) ? RITZ_LANCZOS_EXHAUSTED
                                                       : RITZ_LANCZOS_FOUND;
@@ -593,46 +574,6 @@ static double eigenvalue_at(const block_lanczos *L, int64_t c)
     return fabs(theta) > RITZ_NO_DIRECTION * fabs(L->theta[L->rank[0]])
                ? L->b.S->sigma + 1.0 / theta
                : HUGE_VAL;
-}
-
-/* --- memory --------------------------------------------------------------- */
-
-/* Blocks of the vectors that are found, about. */
-static int64_t blocks_found(int64_t k)
-{
-    return (k + SPARES + B - 1) / B;
-}
-
-/* Bytes that the iteration needs for a while: LAPACK's workspace for T, the
-   coefficients of vectors and of products by each thread, and two blocks. */
-static int64_t bytes_for_a_while(int64_t n, int64_t k, int64_t room)
-{
-    enum { THREADS = 4 }; /* more make little difference */
-    const int64_t order = room * B;
-    const int64_t coefficients = 2 * (order + WIDEST * B) * (k + SPARES) +
-                                 (1 + THREADS) * WIDEST * room * SQUARE;
-
-    return (int64_t)sizeof(double) *
-           (order * (2 * order + 9) + coefficients + 2 * n * B);
-}
-
-int64_t ritz_block_lanczos_needs(const ritz_shifted *S, int64_t k, bool folded)
-{
-    const ritz_lanczos_plan plan = {.k = k};
-    const int64_t n = S->K->nrow;
-    const int64_t room = room_of(&plan, n);
-    const int64_t order = room * B;
-    const int64_t width = width_of(&plan);
-    const int64_t few = blocks_found(k) + 1 + RITZ_BLOCK_WINDOW;
-    const int64_t blocks = (few < room ? few : room) + (width + 1) * width;
-    const int64_t entries = S->M->colptr[n];
-    int64_t bytes =
-        (int64_t)sizeof(double) * (blocks * n * B + 2 * order * order) +
-        bytes_for_a_while(n, k, room) + 12 * entries;
-
-    if (folded)
-        bytes -= ritz_folded_saves(n, S->K->colptr[n]) + 16 * entries;
-    return bytes > 0 ? bytes : 0;
 }
 
 /* What there is of K and M during the iteration. */
@@ -678,27 +619,15 @@ static ritz_status open_pencil(const ritz_shifted *S,
     return ritz_folded_open(&P->M, plan->fold[1]);
 }
 
-/* Bytes by which K and M grow when the iteration has ended. */
-static int64_t bytes_to_open(const lanczos_pencil *P)
-{
-    const int64_t n = P->rows.n;
-    int64_t bytes = P->freed ? 16 * P->rows.start[n] : 0;
-
-    if (P->K.colptr)
-        bytes += ritz_folded_saves(n, P->K.colptr[n]);
-    if (P->M.colptr)
-        bytes += ritz_folded_saves(n, P->M.colptr[n]);
-    return bytes;
-}
-
-/* Decide how many blocks of V memory holds. */
+/* Decide how many blocks of V memory holds. On either side of a shift more pairs
+   may be found than requested; K and M grow again afterwards. */
 static ritz_status admit_blocks(block_lanczos *L, const lanczos_pencil *P)
 {
     const ritz_basis_needs needs = {
-        /* on either side of a shift more may be found than requested */
-        .kept = blocks_found(L->b.S->below > 0 ? 2 * L->k : L->k),
-        .meanwhile = bytes_for_a_while(L->b.n, L->k, L->room),
-        .afterwards = bytes_to_open(P),
+        .kept = ritz_lanczos_found(L->b.S->below > 0 ? 2 * L->k : L->k),
+        .meanwhile = ritz_lanczos_meanwhile(L->b.n, L->k, L->room),
+        .afterwards = ritz_folded_growth(&P->K) + ritz_folded_growth(&P->M) +
+                      (P->freed ? 16 * P->rows.start[P->rows.n] : 0),
     };
 
     return ritz_block_basis_admit(&L->b, &needs);
@@ -713,11 +642,11 @@ static ritz_status find_pairs(const ritz_shifted *S, ritz_lanczos_plan *plan,
     L = {
         .b = {.S = S,
               .n = P->rows.n,
-              .width = width_of(plan),
+              .width = ritz_lanczos_width(plan),
               .noise = 1998,
               .M = &P->rows},
         .k = plan->k,
-        .room = room_of(plan, P->rows.n),
+        .room = ritz_lanczos_blocks(plan, P->rows.n),
         .settled = plan->settled > 0.0 ? plan->settled : RITZ_LANCZOS_SETTLED,
     };
     RITZ_OWN(ritz_dense) U = {0};

@@ -43,11 +43,11 @@ enum {
     ATTEMPTS = 12, /* changes of sigma, and requests for more */
     BODY = 6,      /* rigid modes of one free body */
     GUESS = 20,    /* flexible modes requested first if they are not counted */
-    BEHIND = 2,    /* modes requested above those wanted: a gap to count in */
-    SPARE = 4,     /* the same after a mode was missed */
-    MISSES = 3,    /* searches repeated as a count found more modes */
-    POLISHES = 3,  /* inverse iterations, most often one */
-    STEPS = 4,     /* the same after substructures, most often three */
+    BEHIND = RITZ_SEARCH_BEHIND,
+    SPARE = 4,    /* the same after a mode was missed */
+    MISSES = 3,   /* searches repeated as a count found more modes */
+    POLISHES = 3, /* inverse iterations, most often one */
+    STEPS = 4,    /* the same after substructures, most often three */
 };
 
 /* Median of K_jj / M_jj, and the columns of M that are not zero. */

@@ -52,6 +52,11 @@ ritz_status ritz_eigen_factored(ritz_sparse *K, ritz_sparse *M, ritz_factor **L,
                                 const ritz_span *span,
                                 const ritz_factor_use *use, ritz_pairs *out);
 
+/** Bytes that ritz_eigen_factored() needs beside the factor at least; 0: not
+ * known, as for modes up to a frequency. */
+int64_t ritz_eigen_factored_needs(const ritz_sparse *K, const ritz_sparse *M,
+                                  const ritz_span *span);
+
 /** What the caller of a search hands over to it. */
 typedef struct ritz_eigen_given {
     ritz_factor **L; /* a factor of K, which is taken over; NULL: none */

@@ -44,4 +44,10 @@ static inline int64_t ritz_folded_saves(int64_t n, int64_t entries)
     return 16 * entries - 12 * (entries + n) / 2;
 }
 
+/** Bytes by which it will grow when it is opened; 0 if nothing is folded. */
+static inline int64_t ritz_folded_growth(const ritz_folded *F)
+{
+    return F->colptr ? ritz_folded_saves(F->n, F->colptr[F->n]) : 0;
+}
+
 #endif

@@ -42,16 +42,43 @@ void ritz_mode_search_free(ritz_mode_search *s)
     ritz_moments_free(&s->moments);
 }
 
+/* What the factor is for. Pairs of an earlier search are freed before the next
+   one begins. */
+static ritz_foresight foresee_search(const ritz_mode_search *s)
+{
+    const ritz_dense *X = &s->found.Phi;
+    ritz_foresight later = {0};
+
+    if (s->engine->needs)
+        later.beside = s->engine->needs(&s->S, s->ask, s->own[0] && s->own[1]) -
+                       X->nrow * X->ncol * (int64_t)sizeof *X->val;
+    return later;
+}
+
+int64_t ritz_eigen_factored_needs(const ritz_sparse *K, const ritz_sparse *M,
+                                  const ritz_span *span)
+{
+    const ritz_search_engine *engine = ritz_search_engine_of(span);
+    const ritz_shifted S = {.K = K, .M = M};
+
+    return engine->needs && span->modes > 0
+               ? engine->needs(&S, span->modes + RITZ_SEARCH_BEHIND, true)
+               : 0;
+}
+
 /* Factor K - sigma M in place of what was factored before. */
 static ritz_status shift_to(void *search, double sigma)
 {
     ritz_mode_search *s = search;
     RITZ_OWN(ritz_sparse) A = {0};
     ritz_status status = RITZ_OK;
+    ritz_foresight before = {0};
 
     ritz_factor_free(&s->S.A); /* two at once may not fit */
     RITZ_CHECK(ritz_sparse_add(1.0, s->S.K, -sigma, s->S.M, &A));
+    before = ritz_memory_foresee(foresee_search(s));
     status = ritz_factor_spd(&A, &s->S.A);
+    (void)ritz_memory_foresee(before);
     if (status == RITZ_ERR_SINGULAR)
         s->broken = fmax(s->broken, -sigma);
     s->S.sigma = sigma;
@@ -84,7 +111,20 @@ static ritz_status find_by_arpack(ritz_mode_search *s, ritz_dense *X,
 }
 
 const ritz_search_engine ritz_search_reliable = {.name = "block Lanczos",
-                                                 .find = ritz_find_by_blocks};
+                                                 .find = ritz_find_by_blocks,
+                                                 .needs =
+                                                     ritz_block_lanczos_needs};
+
+/* Pairs to find for `ask` requested to an accuracy. */
+static int64_t pairs_of_rough(int64_t ask)
+{
+    return ask + ask / ROUGH_PART + ROUGH_MORE;
+}
+
+static int64_t needs_of_rough(const ritz_shifted *S, int64_t ask, bool folded)
+{
+    return ritz_block_lanczos_needs(S, pairs_of_rough(ask), folded);
+}
 
 /* More modes than requested are found, so that modes can be counted in the widest
    gap between the additional ones: the wider it is, the smaller is the bound. */
@@ -92,7 +132,7 @@ static ritz_status find_roughly(ritz_mode_search *s, ritz_dense *X,
                                 double **lambda, double *reach,
                                 ritz_lanczos_end *end)
 {
-    ritz_lanczos_plan plan = {.k = s->ask + s->ask / ROUGH_PART + ROUGH_MORE,
+    ritz_lanczos_plan plan = {.k = pairs_of_rough(s->ask),
                               .settled = s->settled,
                               .fold = {s->own[0], s->own[1]},
                               .next = *reach};
@@ -107,7 +147,8 @@ static ritz_status find_roughly(ritz_mode_search *s, ritz_dense *X,
 static const ritz_search_engine rough = {.name = "block Lanczos",
                                          .approximate = true,
                                          .bounded = true,
-                                         .find = find_roughly};
+                                         .find = find_roughly,
+                                         .needs = needs_of_rough};
 
 /*
  * The order of rows is copied, as the factor that has it is freed with the
@@ -135,8 +176,29 @@ static ritz_status find_by_slices(ritz_mode_search *s, ritz_dense *X,
     return ritz_find_by_blocks(s, X, lambda, reach, end);
 }
 
+/* Of the usual slices: a test may have smaller ones. */
+static int64_t needs_of_slices(const ritz_shifted *S, int64_t ask, bool folded)
+{
+    (void)folded;
+    return ritz_slices_need(S, ask);
+}
+
 static const ritz_search_engine sliced = {.name = "spectrum slices",
-                                          .find = find_by_slices};
+                                          .find = find_by_slices,
+                                          .needs = needs_of_slices};
+
+/* Pairs to find by substructures. */
+static int64_t pairs_of_amls(int64_t ask)
+{
+    return ask + ask / GUARD + GUARD;
+}
+
+/* X, M X and A^-1 M X of an inverse iteration. */
+static int64_t needs_of_amls(const ritz_shifted *S, int64_t ask, bool folded)
+{
+    (void)folded;
+    return 3 * pairs_of_amls(ask) * S->K->nrow * (int64_t)sizeof(double);
+}
 
 /* More modes than requested are found, so that the last ones requested are far
    from those that are missing. Slices take over if the structure cannot be
@@ -146,16 +208,14 @@ static ritz_status find_by_amls(ritz_mode_search *s, ritz_dense *X,
                                 ritz_lanczos_end *end)
 {
     ritz_substructuring how = {.leaf = s->size->leaf};
-    const int64_t k = s->ask + s->ask / GUARD + GUARD;
+    const int64_t k = pairs_of_amls(s->ask);
     double last = 0.0;
 
     *reach = HUGE_VAL;
     *end = RITZ_LANCZOS_EXHAUSTED;
     if (k < s->num_heavy / s->size->plenty) {
-        /* X, M X and A^-1 M X of an inverse iteration */
-        RITZ_CHECK(
-            ritz_memory_admit("inverse iteration of substructure modes",
-                              3 * k * s->S.K->nrow * (int64_t)sizeof(double)));
+        RITZ_CHECK(ritz_memory_admit("inverse iteration of substructure modes",
+                                     needs_of_amls(&s->S, s->ask, false)));
         RITZ_CHECK(ritz_density_reach(&s->S, k, &last));
         how.cutoff = s->S.sigma + RITZ_AMLS_CUTOFF * (last - s->S.sigma);
         RITZ_CHECK(ritz_amls_lowest(&s->S, k, &how, X, lambda, end));
@@ -167,14 +227,20 @@ static ritz_status find_by_amls(ritz_mode_search *s, ritz_dense *X,
 }
 
 static const ritz_search_engine engines[] = {
-    [RITZ_EIGEN_AUTO] = {.name = "block Lanczos", .find = ritz_find_by_blocks},
+    [RITZ_EIGEN_AUTO] = {.name = "block Lanczos",
+                         .find = ritz_find_by_blocks,
+                         .needs = ritz_block_lanczos_needs},
     [RITZ_EIGEN_LANCZOS] = {.name = "block Lanczos",
-                            .find = ritz_find_by_blocks},
+                            .find = ritz_find_by_blocks,
+                            .needs = ritz_block_lanczos_needs},
     [RITZ_EIGEN_ARPACK] = {.name = "ARPACK", .find = find_by_arpack},
-    [RITZ_EIGEN_SLICES] = {.name = "spectrum slices", .find = find_by_slices},
+    [RITZ_EIGEN_SLICES] = {.name = "spectrum slices",
+                           .find = find_by_slices,
+                           .needs = needs_of_slices},
     [RITZ_EIGEN_AMLS] = {.name = "substructures",
                          .approximate = true,
-                         .find = find_by_amls},
+                         .find = find_by_amls,
+                         .needs = needs_of_amls},
 };
 
 const ritz_search_engine *ritz_search_engine_of(const ritz_span *span)

@@ -10,6 +10,12 @@
 #include "linear/enclosure.h"
 #include "linear/general.h"
 
+enum {
+    RITZ_SEARCH_BEHIND =
+        2, /* modes requested above those wanted: a gap to count
+                               in */
+};
+
 typedef struct ritz_search_engine ritz_search_engine;
 
 typedef struct ritz_mode_search {
@@ -50,6 +56,8 @@ struct ritz_search_engine {
      * *reach is set as by ritz_lanczos_lowest(). */
     ritz_status (*find)(ritz_mode_search *s, ritz_dense *X, double **lambda,
                         double *reach, ritz_lanczos_end *end);
+    /** Bytes that it needs beside the factor at least; NULL: not known. */
+    int64_t (*needs)(const ritz_shifted *S, int64_t ask, bool folded);
 };
 
 void ritz_mode_search_free(ritz_mode_search *s);

@@ -42,4 +42,8 @@ ritz_status ritz_slices_lowest(ritz_shifted *S, int64_t k,
                                ritz_slicing *slicing, ritz_dense *X,
                                double **lambda, ritz_lanczos_end *end);
 
+/** Bytes that a search for @p k pairs needs beside a factor, at least; S->A is
+ * not used. */
+int64_t ritz_slices_need(const ritz_shifted *S, int64_t k);
+
 #endif

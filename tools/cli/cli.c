@@ -20,8 +20,8 @@ static void gather_options(cli_run *run, cli_option *all)
 {
     const cli_option common[] = {
         CLI_TEXT("memory", &run->memory, "SIZE",
-                 "refuse what needs more memory, before it is allocated: "
-                 "500M, 22G [80 % of the machine's]"),
+                 "hold basis vectors on disk (TMPDIR) or refuse, before "
+                 "memory would exceed this: 500M, 22G [80 % of the machine's]"),
         {.kind = CLI_KIND_TEXT,
          .letter = 'o',
          .written = true,
