@@ -406,6 +406,14 @@
 /* A pivot of a matrix of unit diagonal above this hides no eigenvalue of the
    size of rounding, and a column with it is independent of those before. */
 #define RITZ_PIVOT_STRONG 1e-3
+/* A pivot this many times above the rounding of the products of columns that it
+   is made of is that of an independent column. The rounding is a bound: on a
+   plate what it bounds was a hundred thousand times smaller. */
+#define RITZ_PIVOT_ROUNDING 1e1
+/* The same without rounding, of any matrix. */
+#define RITZ_PIVOT_CLEAR 1e-8
+/* |Q'WQ - I| of which the square, which the next pass leaves, is rounding. */
+#define RITZ_NEARLY_NORMAL 1e-8
 /* Smallest eigenvalue of a definite matrix of unit diagonal that is not
    rounding: eps, measured in test_factor.c. */
 #define RITZ_SINGULAR_SPD 0x1p-52

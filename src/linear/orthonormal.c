@@ -59,6 +59,8 @@ int64_t ritz_pivots_find(ritz_dense *G, double least, double tie, int64_t most,
     return count;
 }
 
+enum { NORMALISED = 4 }; /* passes that make columns orthonormal, at most */
+
 /* G := L of G = L L', column by column; the upper triangle stays. */
 static ritz_status factor_cholesky(ritz_dense *G)
 {
@@ -92,16 +94,31 @@ static ritz_status weigh_columns(ritz_orthonormal *set, const ritz_dense *Q,
     return RITZ_OK;
 }
 
-/* Q := Q L^-T with Q'WQ = L L', twice, and WQ with it; pivots are strong, so
-   that the second L is I but for rounding. */
+/* The largest entry of G - I. */
+static double measure_gap(const ritz_dense *G)
+{
+    double gap = 0.0;
+
+    for (int64_t j = 0; j < G->ncol; j++)
+        for (int64_t i = 0; i < G->nrow; i++)
+            gap = fmax(gap, fabs(ritz_dense_col(G, j)[i] - (i == j)));
+    return gap;
+}
+
+/* Q := Q L^-T with Q'WQ = L L', and WQ with it, twice, or until L is I but for
+   rounding: each pass squares Q'WQ - I. */
 static ritz_status normalise_columns(ritz_orthonormal *set, ritz_dense *Q,
                                      ritz_dense *WQ)
 {
-    for (int pass = 0; pass < 2; pass++) {
+    double gap = HUGE_VAL;
+
+    for (int pass = 0;
+         pass < 2 || (pass < NORMALISED && gap > RITZ_NEARLY_NORMAL); pass++) {
         RITZ_OWN(ritz_dense) G = {0};
 
         RITZ_CHECK(ritz_tall_inner(Q, WQ, &G));
         ritz_dense_symmetrise(&G);
+        gap = measure_gap(&G);
         RITZ_CHECK(factor_cholesky(&G));
         ritz_tall_divide(&G, Q);
         if (pass == 0)
@@ -387,6 +404,23 @@ static ritz_status compare_columns(const column_block *b, ritz_dense *G)
 }
 
 /*
+ * The least pivot of a strong column. Products of columns are known to eps times
+ * the sizes of their terms, of which b->least is eps^2 times the square of
+ * RITZ_ENTRY_ROUNDING: pivots far above this are those of independent columns.
+ */
+static double strong_pivot(const column_block *b)
+{
+    const double eps = RITZ_ENTRY_ROUNDING * DBL_EPSILON;
+    double rounding = 0.0;
+
+    for (int64_t j = 0; j < b->R.ncol; j++)
+        rounding = fmax(rounding,
+                        DBL_EPSILON * b->least[j] / (eps * eps * b->size[j]));
+    return fmin(RITZ_PIVOT_STRONG,
+                fmax(RITZ_PIVOT_CLEAR, RITZ_PIVOT_ROUNDING * rounding));
+}
+
+/*
  * One round: what is left of the block against V, and its strong columns.
  * set->left becomes the number of strong columns beyond @p most.
  */
@@ -394,16 +428,18 @@ static ritz_status go_round(ritz_orthonormal *set, column_block *b,
                             int64_t most, int64_t *order, bool *taken)
 {
     RITZ_OWN(ritz_dense) G = {0};
+    double strong = RITZ_PIVOT_STRONG;
     int64_t count = 0;
 
     RITZ_CHECK(orthogonalise_block(set, b->R.ncol > most, b));
     drop_columns(b, set->tolerance);
     if (b->R.ncol == 0)
         return RITZ_OK;
+    strong = strong_pivot(b);
     RITZ_CHECK(compare_columns(b, &G));
-    count = ritz_pivots_find(&G, RITZ_PIVOT_STRONG, RITZ_TIE, most, order);
+    count = ritz_pivots_find(&G, strong, RITZ_TIE, most, order);
     for (int64_t j = 0; j < G.ncol; j++)
-        set->left += ritz_dense_col(&G, j)[j] > RITZ_PIVOT_STRONG;
+        set->left += ritz_dense_col(&G, j)[j] > strong;
     return take_columns(set, b, count, order, taken);
 }
 
