@@ -198,53 +198,65 @@ ritz_status ritz_krylov_respond(const ritz_krylov *S,
     return RITZ_OK;
 }
 
-/* The forces of a block: columns of F from `first` on, or, where F is NULL, the
-   inertia forces M Q of the last block of a point. */
-typedef struct block_forces {
-    const ritz_dense *F;
-    int64_t first;
-    bool last; /* F is needed no more, and is overwritten by the response */
-} block_forces;
-
-/* Columns [j, j + count) of them. */
-static ritz_status find_forces(const ritz_krylov *S,
-                               const ritz_krylov_point *point,
-                               const block_forces *from, int64_t j,
-                               int64_t count, ritz_forces *out)
+/* Append the responses at a point to columns of F from `first` on. They are
+   found for as many columns at a time as a solve takes, so that little else is
+   held. @param[in] last  F is needed no more, and is overwritten */
+static ritz_status append_loads(ritz_krylov *S, const ritz_krylov_point *point,
+                                const ritz_dense *F, int64_t first, bool last,
+                                int64_t most, bool *taken)
 {
-    ritz_dense Q = {0};
-
-    if (from->F)
-        return ritz_dense_columns(from->F, from->first + j, count, &out->G);
-    Q = ritz_dense_part(&S->set.V, point->first + j, count);
-    return ritz_sparse_mul_sizes(S->body->M, &Q, &out->G, &out->size);
-}
-
-/* Append the response to the forces at a point; it is found for as many columns
-   at a time as a solve takes, so that little else is held. */
-static ritz_status append_block(ritz_krylov *S, const ritz_krylov_point *point,
-                                const block_forces *from, int64_t most,
-                                bool *taken)
-{
-    const int64_t all = from->F ? from->F->ncol - from->first : point->count;
+    const int64_t all = F->ncol - first;
     RITZ_OWN(ritz_dense) own = {0};
     ritz_dense R = {0};
 
-    if (!from->last)
-        RITZ_CHECK(ritz_tall_new(S->body->K->nrow, all, &own));
-    R = from->last ? ritz_dense_part(from->F, from->first, all) : own;
+    if (!last)
+        RITZ_CHECK(ritz_tall_new(F->nrow, all, &own));
+    R = last ? ritz_dense_part(F, first, all) : own;
     for (int64_t j = 0; j < all; j += RITZ_SOLVE_WIDTH) {
         const int64_t left = all - j;
         RITZ_OWN(ritz_forces) forces = {0};
         RITZ_OWN(ritz_dense) X = {0};
 
-        RITZ_CHECK(find_forces(
-            S, point, from, j,
-            left < RITZ_SOLVE_WIDTH ? left : RITZ_SOLVE_WIDTH, &forces));
+        RITZ_CHECK(ritz_dense_columns(
+            F, first + j, left < RITZ_SOLVE_WIDTH ? left : RITZ_SOLVE_WIDTH,
+            &forces.G));
         RITZ_CHECK(ritz_krylov_respond(S, point, &forces, &X));
         ritz_dense_put(&X, 0, j, &R);
     }
     return ritz_orthonormal_append(&S->set, &R, most, taken);
+}
+
+/*
+ * Append the responses to the inertia forces M Q of the last block of a point,
+ * for as many columns at a time as a solve takes, until there are enough: of a
+ * block that is cut, which is the last one, no more responses are found than
+ * that takes. Q begins with the most independent of its columns.
+ */
+static ritz_status append_inertia(ritz_krylov *S, ritz_krylov_point *point,
+                                  int64_t most)
+{
+    const int64_t before = S->set.count;
+    int64_t j = 0;
+
+    S->set.left = 0;
+    while (j < point->count && S->set.left == 0 &&
+           S->set.count - before < most) {
+        const int64_t left = point->count - j;
+        const ritz_dense Q =
+            ritz_dense_part(&S->set.V, point->first + j,
+                            left < RITZ_SOLVE_WIDTH ? left : RITZ_SOLVE_WIDTH);
+        RITZ_OWN(ritz_forces) forces = {0};
+        RITZ_OWN(ritz_dense) R = {0};
+
+        RITZ_CHECK(
+            ritz_sparse_mul_sizes(S->body->M, &Q, &forces.G, &forces.size));
+        RITZ_CHECK(ritz_krylov_respond(S, point, &forces, &R));
+        j += R.ncol;
+        RITZ_CHECK(ritz_orthonormal_append(
+            &S->set, &R, most - (S->set.count - before), NULL));
+    }
+    point->cut = S->set.left > 0 || j < point->count;
+    return RITZ_OK;
 }
 
 /*
@@ -257,8 +269,7 @@ static ritz_status seed_vectors(ritz_krylov *S, const ritz_dense *F,
 {
     const ritz_krylov_point at_rest = {0};
 
-    RITZ_CHECK(append_block(S, &at_rest, &(block_forces){F, 0, false}, F->ncol,
-                            taken));
+    RITZ_CHECK(append_loads(S, &at_rest, F, 0, false, F->ncol, taken));
     S->seeds = S->set.count;
     S->set.expected += S->seeds;
     return RITZ_OK;
@@ -272,17 +283,20 @@ static ritz_status advance_point(ritz_krylov *S, const ritz_dense *F,
                                  int64_t seeded, ritz_krylov_point *point)
 {
     const int64_t first = point->A ? 0 : seeded;
-    const block_forces forces = {F, first,
-                                 F && first == seeded &&
-                                     point == &S->point[S->num_points - 1]};
-    int64_t before = S->set.count;
+    const bool last = first == seeded && point == &S->point[S->num_points - 1];
+    const int64_t before = S->set.count;
+    const int64_t most = S->vectors + S->seeds - before;
 
-    RITZ_CHECK(
-        append_block(S, point, &forces, S->vectors + S->seeds - before, NULL));
+    if (F)
+        RITZ_CHECK(append_loads(S, point, F, first, last, most, NULL));
+    else
+        RITZ_CHECK(append_inertia(S, point, most));
+    if (F)
+        point->cut = S->set.left > 0;
     point->first = F && !point->A && before == S->seeds ? 0 : before;
     point->count = S->set.count - point->first;
     point->ended = point->count == 0;
-    point->whole += !point->ended && S->set.left == 0;
+    point->whole += !point->ended && !point->cut;
     return RITZ_OK;
 }
 

@@ -22,6 +22,7 @@ typedef struct ritz_krylov_point {
     int64_t first, count; /* the last block: columns of V */
     int64_t whole;        /* blocks that are complete */
     bool ended;           /* the last block had no new vector */
+    bool cut;             /* the last block is not complete */
 } ritz_krylov_point;
 
 typedef struct ritz_krylov {

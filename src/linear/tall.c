@@ -111,6 +111,16 @@ void ritz_tall_subtract(const ritz_dense *B, const ritz_dense *H, ritz_dense *A)
                        &(tall_task){.B = B, .H = H, .to = A});
 }
 
+ritz_status ritz_tall_take_out(const ritz_dense *left, const ritz_dense *right,
+                               ritz_dense *X)
+{
+    RITZ_OWN(ritz_dense) H = {0};
+
+    RITZ_CHECK(ritz_tall_inner(right, X, &H));
+    ritz_tall_subtract(left, &H, X);
+    return RITZ_OK;
+}
+
 static void divide_rows(int thread, int64_t from, int64_t to, void *task)
 {
     const tall_task *t = task;
@@ -138,7 +148,7 @@ void ritz_tall_divide(const ritz_dense *L, ritz_dense *A)
 typedef struct weigh_task {
     const ritz_sparse *W;
     const ritz_dense *V, *X;
-    ritz_dense *WX;
+    ritz_dense *WX, *size;
     const ritz_tile_width *tile;
     int64_t k, count;
     double *x;    /* the columns of X, row by row */
@@ -159,12 +169,12 @@ static void take_rows(int thread, int64_t from, int64_t to, void *task)
             t->x[i * width + c] = c < t->count ? X[i + c * n] : 0.0;
 }
 
-/* Rows of a block become rows of columns k, k + 1, ... of W X. */
+/* Rows of a block become rows of columns k, k + 1, ... of Y. */
 static void put_rows(const weigh_task *t, int64_t from, int64_t rows,
-                     const double *y)
+                     const double *y, const ritz_dense *Y)
 {
     for (int64_t c = 0; c < t->count; c++) {
-        double *to = ritz_dense_col(t->WX, t->k + c) + from;
+        double *to = ritz_dense_col(Y, t->k + c) + from;
 
         for (int64_t i = 0; i < rows; i++)
             to[i] = y[i * t->tile->width + c];
@@ -181,7 +191,7 @@ static void weigh_rows(int thread, int64_t from, int64_t to, void *task)
         double y[ROWS * WIDEST];
 
         t->tile->symmetric(r, r + rows, t->W, t->x, y);
-        put_rows(t, r, rows, y);
+        put_rows(t, r, rows, y, t->WX);
     }
 }
 
@@ -204,7 +214,22 @@ static void weigh_rows_sizes(int thread, int64_t from, int64_t to, void *task)
                 sum[c] += fabs(v[i]) * s[i * width + c];
         }
         if (t->WX)
-            put_rows(t, r, rows, y);
+            put_rows(t, r, rows, y, t->WX);
+    }
+}
+
+static void weigh_rows_terms(int thread, int64_t from, int64_t to, void *task)
+{
+    const weigh_task *t = task;
+
+    (void)thread;
+    for (int64_t r = from; r < to; r += ROWS) {
+        const int64_t rows = to - r < ROWS ? to - r : ROWS;
+        double y[ROWS * WIDEST], s[ROWS * WIDEST];
+
+        t->tile->terms(r, r + rows, t->W, t->x, y, s);
+        put_rows(t, r, rows, y, t->WX);
+        put_rows(t, r, rows, s, t->size);
     }
 }
 
@@ -267,6 +292,27 @@ ritz_status ritz_tall_weigh(const ritz_sparse *W, const ritz_dense *X,
         ritz_team_over(threads, X->nrow, take_rows, &t);
         ritz_team_over(threads, X->nrow, weigh_rows, &t);
     }
+    return RITZ_OK;
+}
+
+ritz_status ritz_tall_weigh_terms(const ritz_sparse *W, const ritz_dense *X,
+                                  ritz_dense *WX, ritz_dense *size)
+{
+    const int threads = threads_for_sparse(W);
+    RITZ_OWN(ritz_dense) Y = {0}, S = {0};
+    RITZ_OWN_ARRAY double *x = NULL;
+    weigh_task t = {.W = W, .X = X, .WX = &Y, .size = &S};
+
+    RITZ_CHECK(ritz_tall_new(X->nrow, X->ncol, &Y));
+    RITZ_CHECK(ritz_tall_new(X->nrow, X->ncol, &S));
+    RITZ_CHECK_RAW(x, X->nrow * WIDEST);
+    t.x = x;
+    while (next_columns(&t)) {
+        ritz_team_over(threads, X->nrow, take_rows, &t);
+        ritz_team_over(threads, X->nrow, weigh_rows_terms, &t);
+    }
+    RITZ_MOVE(*WX, Y);
+    RITZ_MOVE(*size, S);
     return RITZ_OK;
 }
 

@@ -46,4 +46,20 @@ ritz_status ritz_tall_weigh_sizes(const ritz_sparse *W, const ritz_dense *V,
                                   const ritz_dense *X, ritz_dense *WX,
                                   double *size);
 
+/**
+ * W X, and |W||X|, the magnitude of the terms that it sums.
+ *
+ * @param[in]  W         symmetric
+ * @param[out] WX, size  allocated here
+ */
+ritz_status ritz_tall_weigh_terms(const ritz_sparse *W, const ritz_dense *X,
+                                  ritz_dense *WX, ritz_dense *size);
+
+/**
+ * X := X - left (right' X): of columns with right' left = I, the part of X
+ * along them. Once leaves rounding; twice is enough.
+ */
+ritz_status ritz_tall_take_out(const ritz_dense *left, const ritz_dense *right,
+                               ritz_dense *X);
+
 #endif

@@ -145,11 +145,37 @@ static void results_have_the_same_bits_in_every_run(void **state)
     ritz_set_threads(1);
 }
 
+/* W X and |W||X|: the terms of all columns against those of one entry. */
+static void terms_are_those_of_each_row(void **state)
+{
+    RITZ_OWN(ritz_sparse) K = {0}, M = {0};
+    RITZ_OWN(ritz_dense) X = {0}, KX = {0}, Y = {0}, S = {0};
+
+    (void)state;
+    ritz_set_threads(MOST_THREADS);
+    lattice_new(EDGE, 1.0, &K, &M);
+    fill(POINTS, COLUMNS, 0.0, &X);
+    assert_ok(ritz_sparse_mul(&K, &X, &KX));
+    assert_ok(ritz_tall_weigh_terms(&K, &X, &Y, &S));
+    check_near(&Y, &KX, 7.0 * 13.0);
+    for (int64_t j = 0; j < COLUMNS; j++)
+        for (int64_t i = 0; i < POINTS; i += 97) {
+            const double *x = ritz_dense_col(&X, j);
+            double sum = 0.0;
+
+            for (int64_t p = K.colptr[i]; p < K.colptr[i + 1]; p++)
+                sum += fabs(K.val[p] * x[K.rowind[p]]);
+            assert_near(ritz_dense_col(&S, j)[i], sum, 7.0 * DBL_EPSILON * sum);
+        }
+    ritz_set_threads(1);
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(products_agree_with_plain_ones),
     cmocka_unit_test(division_is_the_inverse_of_multiplication),
     cmocka_unit_test(weighed_columns_and_their_terms_are_right),
     cmocka_unit_test(results_have_the_same_bits_in_every_run),
+    cmocka_unit_test(terms_are_those_of_each_row),
 };
 
 TEST_MODULE(tall, tests, NULL, NULL)
