@@ -21,16 +21,22 @@
 #include "bases/free_set.h"
 
 #include "base/alloc.h"
+#include "base/team.h"
 #include "base/tolerances.h"
 #include "bases/columns.h"
 #include "linear/factor.h"
 #include "linear/requested.h"
+#include "linear/tall.h"
 
 #include <cblas.h>
 #include <lapacke.h>
 #include <math.h>
 
-enum { MOST_SWEEPS = 60, SLOW_SWEEPS = 8 };
+enum {
+    MOST_SWEEPS = 60,
+    SLOW_SWEEPS = 8,
+    WORTHWHILE = 5000, /* rows from which several threads work on columns */
+};
 
 void ritz_free_set_free(ritz_free_set *set)
 {
@@ -103,42 +109,82 @@ static void bound_responses(const ritz_pairs *modes, const ritz_dense *share,
     }
 }
 
+/* The operands of what is done with each column of X. */
+typedef struct column_work {
+    double s;
+    const ritz_dense *G, *Psi;
+    ritz_dense *X;
+    const double *least;
+    double *change; /* of each column */
+} column_work;
+
+/* Threads for so many columns. */
+static int threads_for(const ritz_dense *X)
+{
+    return ritz_team_ready(X->nrow < WORTHWHILE ? 1 : X->ncol);
+}
+
+/* x := g + s x */
+static void add_loads(int thread, int64_t from, int64_t to, void *task)
+{
+    const column_work *t = task;
+    const int64_t n = t->X->nrow;
+
+    (void)thread;
+    for (int64_t k = from * n; k < to * n; k++)
+        t->X->val[k] = t->G->val[k] + t->s * t->X->val[k];
+}
+
 /* X := A^-1 (G + s M Psi), one step of the iteration. */
 static ritz_status iterate_residual(ritz_factor *A, const ritz_sparse *M,
                                     double s, const ritz_dense *G,
                                     const ritz_dense *Psi, ritz_dense *X)
 {
-    RITZ_CHECK(ritz_sparse_mul(M, Psi, X));
-    for (int64_t k = 0; k < G->nrow * G->ncol; k++)
-        X->val[k] = G->val[k] + s * X->val[k];
+    RITZ_CHECK(ritz_tall_new(Psi->nrow, Psi->ncol, X));
+    RITZ_CHECK(ritz_tall_weigh(M, Psi, X));
+    ritz_team_over(threads_for(X), X->ncol, add_loads,
+                   &(column_work){.s = s, .G = G, .X = X});
     return ritz_factor_solve(A, X);
+}
+
+static void measure_columns(int thread, int64_t from, int64_t to, void *task)
+{
+    const column_work *t = task;
+
+    (void)thread;
+    for (int64_t j = from; j < to; j++) {
+        const double *now = ritz_dense_col(t->X, j);
+        const double *before = ritz_dense_col(t->Psi, j);
+        double moved = 0.0;
+        double size = t->least[j];
+
+        for (int64_t i = 0; i < t->X->nrow; i++) { /* fmax() is slower */
+            const double step = fabs(now[i] - before[i]);
+
+            moved = step > moved ? step : moved;
+            size = fabs(now[i]) > size ? fabs(now[i]) : size;
+        }
+        t->change[j] = size > 0.0 ? moved / size : 0.0;
+    }
 }
 
 /*
  * The largest change of a column relative to its size, or relative to least[j]
  * if the column is smaller, where it is rounding.
  */
-static double measure_change(const ritz_dense *Psi, const ritz_dense *X,
-                             const double *least)
+static ritz_status measure_change(const ritz_dense *Psi, ritz_dense *X,
+                                  const double *least, double *out)
 {
-    double change = 0.0;
+    RITZ_OWN_ARRAY double *change = NULL;
 
-    for (int64_t j = 0; j < X->ncol; j++) {
-        const double *now = ritz_dense_col(X, j);
-        const double *before = ritz_dense_col(Psi, j);
-        double moved = 0.0;
-        double size = least[j];
-
-        for (int64_t i = 0; i < X->nrow; i++) { /* fmax() is slower */
-            const double step = fabs(now[i] - before[i]);
-
-            moved = step > moved ? step : moved;
-            size = fabs(now[i]) > size ? fabs(now[i]) : size;
-        }
-        if (size > 0.0)
-            change = fmax(change, moved / size);
-    }
-    return change;
+    RITZ_CHECK_NEW(change, X->ncol);
+    ritz_team_over(
+        threads_for(X), X->ncol, measure_columns,
+        &(column_work){.Psi = Psi, .X = X, .least = least, .change = change});
+    *out = 0.0;
+    for (int64_t j = 0; j < X->ncol; j++)
+        *out = fmax(*out, change[j]);
+    return RITZ_OK;
 }
 
 /* A search for residual modes, with what each of its functions needs. */
@@ -185,10 +231,7 @@ static ritz_status relieve_loads(const ritz_dense *F, const ritz_dense *MPhi,
 {
     RITZ_CHECK(ritz_dense_copy(F, G));
     if (MPhi->ncol > 0)
-        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, (int)F->nrow,
-                    (int)F->ncol, (int)MPhi->ncol, -1.0, MPhi->val,
-                    (int)F->nrow, share->val, (int)share->nrow, 1.0, G->val,
-                    (int)F->nrow);
+        ritz_tall_subtract(MPhi, share, G);
     return RITZ_OK;
 }
 
@@ -221,15 +264,16 @@ static ritz_status sweep_residual(const residual_task *t,
     RITZ_CHECK_NEW(least, F->ncol);
     RITZ_CHECK(find_shares(t->set, Phi, &share));
     RITZ_CHECK(find_responses(t, modes, &share, A, &Psi, least));
-    RITZ_CHECK(ritz_sparse_mul(M, Phi, &MPhi));
+    RITZ_CHECK(ritz_tall_new(Phi->nrow, Phi->ncol, &MPhi));
+    RITZ_CHECK(ritz_tall_weigh(M, Phi, &MPhi));
     RITZ_CHECK(relieve_loads(F, &MPhi, &share, &G));
-    RITZ_CHECK(ritz_dense_take_out(Phi, &MPhi, &Psi));
+    RITZ_CHECK(ritz_tall_take_out(Phi, &MPhi, &Psi));
     for (int k = 0; k < MOST_SWEEPS; k++) {
         RITZ_OWN(ritz_dense) X = {0};
 
         RITZ_CHECK(iterate_residual(A, M, s, &G, &Psi, &X));
-        RITZ_CHECK(ritz_dense_take_out(Phi, &MPhi, &X));
-        *change = measure_change(&Psi, &X, least);
+        RITZ_CHECK(ritz_tall_take_out(Phi, &MPhi, &X));
+        RITZ_CHECK(measure_change(&Psi, &X, least, change));
         ritz_dense_replace(&Psi, &X);
         if (left * *change <= settled) {
             *change *= left;
