@@ -492,6 +492,7 @@ void cli_parse(const cli_program *program, const cli_option *options, int argc,
         cli_refuse(program, "no output, name it with -o");
     gather_outputs(run, all);
     ritz_draft_hold();
+    cli_begin_again(run);
     cli_watch(run);
     ritz_map_files(); /* after it, whose handler ends the program */
     run->began = cli_clock();

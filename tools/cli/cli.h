@@ -219,9 +219,14 @@ bool cli_limit_memory(const char *text);
  *
  * A program with `threads` starts again, with as many threads as there are
  * cores, if its inputs are large and OMP_THREAD_LIMIT is not set. Call this
- * therefore before anything is written or printed.
+ * therefore before anything is written or printed. If the operands alone are
+ * large, it has started again in cli_begin_again().
  */
 ritz_status cli_input(cli_run *run, const char *path);
+
+/** Start a program with `threads` again as cli_input() does, before its operands
+ * are looked at, if they are files and large. */
+void cli_begin_again(const cli_run *run);
 
 /** Register a file whose reader computes the SHA-256 and passes it to
  * cli_input_sum. */

@@ -84,17 +84,13 @@ static const char *spins_for(int threads)
  * executed again if an input is a pipe, which cannot be read twice, or if a
  * warning was printed, which would appear twice. A failure costs only speed.
  */
-static void limit_threads(cli_run *run, const struct stat *file)
+static void execute_again(const cli_run *run, int64_t bytes, bool piped)
 {
     char cores[24];
     char self[CLI_MAX_COMMAND];
     ssize_t length = 0;
 
-    run->piped = run->piped || !S_ISREG(file->st_mode);
-    run->bytes += S_ISREG(file->st_mode) ? file->st_size : 0;
-    openblas_set_num_threads(run->bytes < LARGE ? 1 : allowed_threads());
-    ritz_set_threads(allowed_threads());
-    if (!run->program->threads || run->bytes < LARGE || run->piped ||
+    if (!run->program->threads || bytes < LARGE || piped ||
         json_array_size(run->warnings) > 0 || getenv("OMP_THREAD_LIMIT"))
         return;
     length = readlink("/proc/self/exe", self, sizeof self - 1);
@@ -108,6 +104,29 @@ static void limit_threads(cli_run *run, const struct stat *file)
         (getenv("OMP_WAIT_POLICY") ||
          setenv("GOMP_SPINCOUNT", spins_for(allowed_threads()), 0) == 0))
         execv(self, run->argv);
+}
+
+static void limit_threads(cli_run *run, const struct stat *file)
+{
+    run->piped = run->piped || !S_ISREG(file->st_mode);
+    run->bytes += S_ISREG(file->st_mode) ? file->st_size : 0;
+    openblas_set_num_threads(run->bytes < LARGE ? 1 : allowed_threads());
+    ritz_set_threads(allowed_threads());
+    execute_again(run, run->bytes, run->piped);
+}
+
+void cli_begin_again(const cli_run *run)
+{
+    struct stat there;
+    int64_t bytes = 0;
+    bool piped = false;
+
+    for (int k = 0; k < run->num_operands; k++)
+        if (stat(run->operand[k], &there) == 0) {
+            piped = piped || !S_ISREG(there.st_mode);
+            bytes += S_ISREG(there.st_mode) ? there.st_size : 0;
+        }
+    execute_again(run, bytes, piped);
 }
 
 /* --- files that are read -------------------------------------------------- */
