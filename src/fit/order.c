@@ -62,7 +62,7 @@ static ritz_status begin_nesting(ritz_fitter *f, ritz_nesting *n)
 }
 
 /* A model with one column less that is measured. */
-typedef struct trial {
+typedef struct column_trial {
     ritz_nesting *n;     /* borrowed */
     int64_t left, which; /* without this one of the first `left` of the order */
     double most;         /* see ritz_nesting_ratio */
@@ -70,16 +70,16 @@ typedef struct trial {
     double ratio;
     ritz_pairs modes;
     ritz_status status;
-} trial;
+} column_trial;
 
-static void trial_free(trial *t)
+static void column_trial_free(column_trial *t)
 {
     ritz_pairs_free(&t->modes);
 }
 
-RITZ_ARRAY_OF(trial);
+RITZ_ARRAY_OF(column_trial);
 
-static ritz_status measure_trial(trial *t)
+static ritz_status measure_trial(column_trial *t)
 {
     const size_t before = (size_t)t->which;
     const size_t behind = (size_t)(t->left - 1 - t->which);
@@ -94,14 +94,15 @@ static ritz_status measure_trial(trial *t)
 
 static void measure_item(int64_t k, void *task)
 {
-    trial *t = (trial *)task + k;
+    column_trial *t = (column_trial *)task + k;
 
     t->status = measure_trial(t);
 }
 
 /* Measure some trials at once. What fails is memory: other failures are the
    model's own, and make its ratio infinite. */
-static ritz_status measure_trials(int threads, int64_t count, trial *item)
+static ritz_status measure_trials(int threads, int64_t count,
+                                  column_trial *item)
 {
     RITZ_CHECK(ritz_fit_go_on(item->n->f));
     ritz_team_each(threads, count, measure_item, item);
@@ -126,7 +127,7 @@ static void move_column(ritz_nesting *n, int64_t from, int64_t to)
 static ritz_status order_alone(ritz_nesting *n)
 {
     const int threads = ritz_nesting_threads(n, n->count - n->fixed);
-    RITZ_OWN(trial_array) some = {.count = ritz_team_shares(threads)};
+    RITZ_OWN(column_trial_array) some = {.count = ritz_team_shares(threads)};
 
     RITZ_CHECK_NEW(some.at, some.count);
     for (int64_t k = n->fixed; k < n->count && n->count > 1; k += some.count) {
@@ -135,7 +136,7 @@ static ritz_status order_alone(ritz_nesting *n)
 
         ritz_monitor_step("columns alone", k, n->count);
         for (int64_t t = 0; t < more; t++)
-            some.at[t] = (trial){
+            some.at[t] = (column_trial){
                 .n = n, .left = n->count, .which = k + t, .most = HUGE_VAL};
         RITZ_CHECK(measure_trials(threads, more, some.at));
         for (int64_t t = 0; t < more; t++)
@@ -237,7 +238,7 @@ static bool can_screen(const ritz_nesting *n, double least)
 
 /* Fill the next trials of those that are not ruled out. @return how many */
 static int64_t choose_trials(ritz_nesting *n, int64_t left, double least,
-                             int64_t *next, trial_array *some)
+                             int64_t *next, column_trial_array *some)
 {
     const bool screens = can_screen(n, least);
     int64_t count = 0;
@@ -248,12 +249,12 @@ static int64_t choose_trials(ritz_nesting *n, int64_t left, double least,
 
         if (screens && is_surely_worse(n, which, least))
             continue;
-        trial_free(&some->at[count]);
-        some->at[count++] = (trial){.n = n,
-                                    .left = left,
-                                    .which = which,
-                                    .most = least,
-                                    .keeps_modes = !n->f->scene};
+        column_trial_free(&some->at[count]);
+        some->at[count++] = (column_trial){.n = n,
+                                           .left = left,
+                                           .which = which,
+                                           .most = least,
+                                           .keeps_modes = !n->f->scene};
     }
     return count;
 }
@@ -262,7 +263,7 @@ static int64_t choose_trials(ritz_nesting *n, int64_t left, double least,
 static ritz_status drop_column(ritz_nesting *n, int64_t left)
 {
     const int threads = ritz_nesting_threads(n, TRIED);
-    RITZ_OWN(trial_array) some = {.count = threads};
+    RITZ_OWN(column_trial_array) some = {.count = threads};
     RITZ_OWN(ritz_pairs) modes = {0};
     double least = HUGE_VAL;
     int64_t worst = left - 1, next = 0, count = 0;
