@@ -254,7 +254,9 @@ static ritz_status compare_sweep(const ritz_sides *sides,
     RITZ_CHECK_NEW(s->reduced, s->count * values);
     while (first < s->count && s->hertz[first] < least)
         first++; /* frequencies ascend */
-    memcpy(s->reduced, s->full, (size_t)(first * values) * sizeof *s->reduced);
+    if (first > 0)
+        memcpy(s->reduced, s->full,
+               (size_t)(first * values) * sizeof *s->reduced);
     RITZ_CHECK_IN("reduced model",
                   ritz_poles_add_all(&sides->reduced, s->count - first,
                                      s->hertz + first,
