@@ -286,6 +286,8 @@ static ritz_status find_pairs(ritz_mode_search *s)
     ritz_pairs_free(&s->found);
     s->all =
         s->all || s->num_heavy <= s->size->small || s->ask + 21 > s->num_heavy;
+    RITZ_REFUSE_IF(!s->all && ritz_sparse_max(s->S.K) == 0.0, RITZ_ERR_SINGULAR,
+                   "the stiffness is zero: every motion is a rigid one");
     if (s->all)
         RITZ_CHECK(ritz_modes_condensed(&s->S, s->num_heavy, s->heavy, &X));
     else

@@ -77,6 +77,7 @@ ritz_status ritz_pairs_sharpen(const ritz_sparse *K, const ritz_sparse *M,
     const int64_t end = ritz_pairs_lost(P, energy);
     RITZ_OWN(ritz_dense) some_K = {0}, some_M = {0};
     RITZ_OWN(ritz_pairs) found = {0};
+    double scale = 0.0; /* as of ritz_pairs_relate() */
 
     if (end == first)
         return RITZ_OK;
@@ -86,7 +87,10 @@ ritz_status ritz_pairs_sharpen(const ritz_sparse *K, const ritz_sparse *M,
         project_columns(M, ritz_sparse_mul, &P->Phi, first, end, &some_M));
     RITZ_CHECK(ritz_pairs_turn(P, &some_K, &some_M, &found));
     RITZ_CHECK(ritz_dense_times(&found.Phi, &P->Phi));
-    for (int64_t j = 0; j < P->Phi.ncol; j++)
+    for (int64_t j = 0; j < P->Phi.ncol; j++) {
         P->lambda[j] = found.lambda[j];
+        scale = fmax(scale, energy[j]);
+    }
+    P->num_rigid = ritz_eigen_rigid(P->Phi.ncol, P->lambda, scale);
     return RITZ_OK;
 }

@@ -14,7 +14,8 @@
  * @param[in]     energy  |x|'|K||x| of each pair (ritz_pairs_assess())
  * @param[in,out] P       ascending, of unit mass. If no flexible pair has lost
  *                        digits, nothing changes; else Phi and lambda of all
- *                        pairs are replaced. Residuals stay as they are: the
+ *                        pairs are replaced, and rigid-body modes are counted
+ *                        again. Residuals stay as they are: the
  *                        change of K x - lambda M x is of the order of
  *                        eps |K||x|.
  * @return RITZ_ERR_MEMORY, or that of ritz_eigen_dense()

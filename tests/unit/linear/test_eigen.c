@@ -576,6 +576,53 @@ static void what_is_no_pencil_is_refused(void **state)
     release(&p);
 }
 
+/* Masses of 1 between springs of 1 and 1e9 in turn. Rounding of x'K x, 1e-7, is
+   more than the lowest eigenvalues: that the first is zero shows once x'K x is
+   summed with twice the digits. */
+static void
+a_free_chain_of_soft_and_stiff_springs_has_one_rigid_mode(void **state)
+{
+    enum { MASSES = 960 };
+    loop l = {0};
+    pencil p = {0};
+    ritz_pairs P = {0};
+
+    (void)state;
+    for (int64_t i = 0; i < MASSES; i++) {
+        const double k = i % 2 == 0 ? 1.0 : 1e9;
+
+        add(&l, i, i, 0.0, 1.0);
+        if (i + 1 == MASSES)
+            continue;
+        add(&l, i, i, k, 0.0);
+        add(&l, i + 1, i + 1, k, 0.0);
+        add(&l, i, i + 1, -k, 0.0);
+        add(&l, i + 1, i, -k, 0.0);
+    }
+    p = finish(&l, MASSES);
+    assert_ok(ritz_eigen_sparse(&p.K, &p.M, &(ritz_span){.modes = 5}, &P));
+    assert_int_equal(P.num_rigid, 1);
+    assert_int_equal(P.Phi.ncol, 6);
+    ritz_pairs_free(&P);
+    release(&p);
+}
+
+static void masses_without_stiffness_are_refused(void **state)
+{
+    enum { MASSES = 960 };
+    loop l = {0};
+    pencil p = {0};
+    ritz_pairs P = {0};
+
+    (void)state;
+    for (int64_t i = 0; i < MASSES; i++)
+        add(&l, i, i, 0.0, 1.0);
+    p = finish(&l, MASSES);
+    assert_fails(ritz_eigen_sparse(&p.K, &p.M, &(ritz_span){.modes = 5}, &P),
+                 RITZ_ERR_SINGULAR, "the stiffness is zero");
+    release(&p);
+}
+
 /* A dof with neither stiffness nor mass beside 700 that have both. */
 static void a_mechanism_without_mass_is_refused(void **state)
 {
@@ -738,6 +785,8 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(slender_beams_are_not_too_soft),
     cmocka_unit_test(inertia_counts_modes),
     cmocka_unit_test(what_is_no_pencil_is_refused),
+    cmocka_unit_test(a_free_chain_of_soft_and_stiff_springs_has_one_rigid_mode),
+    cmocka_unit_test(masses_without_stiffness_are_refused),
     cmocka_unit_test(a_mechanism_without_mass_is_refused),
     cmocka_unit_test(the_factor_is_lent_while_it_is_there),
     cmocka_unit_test(a_factor_that_is_gone_is_reported),
