@@ -408,11 +408,14 @@ typedef struct ritz_pairs {
     double sigma;      /* shift that was used  [rad^2/s^2] */
     double proven_to; /* no mode is missing below  [rad^2/s^2]; NaN: unproven */
     char engine[RITZ_NAME_SIZE];
+    const char *reason; /* why RITZ_EIGEN_AUTO chose it, one phrase; NULL: there
+                           was no choice */
 } ritz_pairs;
 
 /* How pairs of a large pencil are found. */
 typedef enum ritz_eigen_engine {
-    RITZ_EIGEN_AUTO,    /* the one of those below that is fastest as a rule */
+    RITZ_EIGEN_AUTO,    /* LANCZOS, SLICES or AMLS, by predictions of their time
+                           and memory */
     RITZ_EIGEN_LANCZOS, /* block Lanczos at one shift */
     RITZ_EIGEN_ARPACK,  /* one vector at a time, for comparison */
     RITZ_EIGEN_SLICES,  /* block Lanczos at shifts within the spectrum */

@@ -199,6 +199,9 @@ typedef struct ritz_origin {
     char options[RITZ_NAME_SIZE];   /* as asked: "modes 12" */
     char reference[RITZ_NAME_SIZE]; /* key in docs/references.bib */
     char engine[RITZ_NAME_SIZE];    /* "dense LAPACK", "CHOLMOD + ARPACK" */
+    const char
+        *reason; /* why this engine was chosen, one phrase; NULL: there was
+                           no choice, or the basis was read from a file */
 } ritz_origin;
 
 /*

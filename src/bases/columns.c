@@ -64,13 +64,19 @@ void ritz_columns_label_dofs(int64_t count, const int64_t *dof, int64_t at,
     }
 }
 
+void ritz_origin_name_engine(const ritz_pairs *modes, ritz_origin *origin)
+{
+    memcpy(origin->engine, modes->engine, sizeof origin->engine);
+    origin->reason = modes->reason;
+}
+
 ritz_status ritz_basis_of_modes(const ritz_pairs *modes, int64_t more,
                                 ritz_basis *out)
 {
     RITZ_CHECK(ritz_basis_new(modes->Phi.nrow, modes->Phi.ncol + more, out));
     ritz_dense_put(&modes->Phi, 0, 0, &out->T);
     ritz_columns_label(modes, RITZ_COLUMN_NORMAL, 0, &out->columns);
-    memcpy(out->origin.engine, modes->engine, sizeof out->origin.engine);
+    ritz_origin_name_engine(modes, &out->origin);
     return RITZ_OK;
 }
 

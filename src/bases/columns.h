@@ -36,6 +36,9 @@ void ritz_columns_label_rigid(int64_t at, ritz_columns *columns);
 void ritz_columns_label_dofs(int64_t count, const int64_t *dof, int64_t at,
                              ritz_columns *columns);
 
+/** The engine that found modes, and why it was chosen. */
+void ritz_origin_name_engine(const ritz_pairs *modes, ritz_origin *origin);
+
 /** A basis of modes, rigid and normal, and @p more columns of zeros. */
 ritz_status ritz_basis_of_modes(const ritz_pairs *modes, int64_t more,
                                 ritz_basis *out);

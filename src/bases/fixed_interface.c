@@ -201,7 +201,7 @@ static ritz_status make_fixed(const ritz_request *request, int usual,
         ritz_interior_statics_join(request, &s, &modes.Phi, &t.statics, out));
     ritz_columns_label(&modes, RITZ_COLUMN_NORMAL, s.held.columns.count,
                        &out->columns);
-    memcpy(out->origin.engine, modes.engine, sizeof out->origin.engine);
+    ritz_origin_name_engine(&modes, &out->origin);
     return RITZ_OK;
 }
 

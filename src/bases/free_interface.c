@@ -325,7 +325,7 @@ static ritz_status turn_columns(const ritz_free_set *set,
                                                       motion */
         out->columns.hertz[j] = out->columns.error[j] = nan("");
     }
-    memcpy(out->origin.engine, modes->engine, sizeof out->origin.engine);
+    ritz_origin_name_engine(modes, &out->origin);
     return RITZ_OK;
 }
 

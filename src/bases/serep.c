@@ -264,7 +264,7 @@ static ritz_status make_serep(const ritz_request *request, ritz_basis *out)
     for (int64_t k = 0; k < m; k++)
         ritz_columns_label_dofs(1, &a->at[c.at[k]], k, &basis.columns);
     add_remark(&c, &basis);
-    memcpy(basis.origin.engine, modes.engine, sizeof basis.origin.engine);
+    ritz_origin_name_engine(&modes, &basis.origin);
     RITZ_MOVE(*out, basis);
     return RITZ_OK;
 }

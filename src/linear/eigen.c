@@ -97,7 +97,8 @@ ritz_status ritz_pairs_copy(const ritz_pairs *from, int64_t count,
     RITZ_OWN(ritz_pairs)
     copy = {.num_rigid = from->num_rigid < count ? from->num_rigid : count,
             .sigma = from->sigma,
-            .proven_to = from->proven_to};
+            .proven_to = from->proven_to,
+            .reason = from->reason};
 
     if (count < from->Phi.ncol)
         copy.proven_to = fmin(copy.proven_to, from->lambda[count]);

@@ -581,11 +581,13 @@ ritz_status ritz_eigen_search(const ritz_sparse *K, const ritz_sparse *M,
         s.own[1] = given->M;
     }
     RITZ_CHECK(begin_search(&s));
+    ritz_search_choose(&s);
     RITZ_CHECK(search_proven(&s, &end));
     ritz_pairs_truncate(&s.found, end);
     ritz_dense_orient(&s.found.Phi);
     s.found.sigma = s.S.sigma;
     name_engine(&s);
+    s.found.reason = s.all ? NULL : s.reason;
     RITZ_MOVE(*out, s.found);
     return RITZ_OK;
 }

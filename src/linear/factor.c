@@ -37,7 +37,8 @@ enum {
 
 struct ritz_factor {
     int64_t n;
-    int64_t *order; /* row k of the factor is row order[k] of A */
+    double entries, operations; /* as CHOLMOD counts them */
+    int64_t *order;             /* row k of the factor is row order[k] of A */
     int32_t *place; /* its inverse: row i of A is row place[i] of the factor */
     ritz_supernodal *S;
 };
@@ -188,6 +189,8 @@ static ritz_status pack_factor(ritz_factor *F, cholesky *C, const double *a,
         if (C->L->xsize * sizeof(double) >= LARGE)
             ritz_memory_return(); /* for a while parts of L are held twice */
         RITZ_CHECK(copy_order(C->L, F));
+        F->entries = C->common.lnz;
+        F->operations = C->common.fl;
         RITZ_CHECK(ritz_supernodal_new(C->L, NULL, &F->S));
         cholmod_l_free_factor(&C->L, &C->common);
         if (row >= 0 && !(ratio > RITZ_PIVOT_STRONG))
@@ -511,6 +514,12 @@ void ritz_factor_solve_two(ritz_factor *F, double *x, double *room)
     ritz_team_over(threads, F->n, join_rows, &t);
     ritz_supernodal_solve(F->S, RITZ_SOLVE_WIDTH, room);
     ritz_team_over(threads, F->n, part_rows, &t);
+}
+
+void ritz_factor_size(const ritz_factor *F, double *entries, double *operations)
+{
+    *entries = F->entries;
+    *operations = F->operations;
 }
 
 int ritz_factor_threads(const ritz_factor *F)

@@ -67,6 +67,10 @@ void ritz_factor_solve_rows(ritz_factor *F, double *x);
  */
 void ritz_factor_solve_two(ritz_factor *F, double *x, double *room);
 
+/** Entries of a factor of a definite matrix, and the operations that it took. */
+void ritz_factor_size(const ritz_factor *F, double *entries,
+                      double *operations);
+
 /** How many threads each solve uses; products of vectors of this length may use
  * as many. */
 int ritz_factor_threads(const ritz_factor *F);

@@ -21,6 +21,7 @@
 #include "linear/amls.h"
 #include "linear/block_lanczos.h"
 #include "linear/density.h"
+#include "linear/engine_choice.h"
 #include "linear/factor.h"
 #include "linear/first_shift.h"
 #include "linear/slices.h"
@@ -250,6 +251,21 @@ const ritz_search_engine *ritz_search_engine_of(const ritz_span *span)
         &engines[tried ? ritz_trial_here()->engine : span->engine];
 
     return span->accuracy > 0.0 && e->find == ritz_find_by_blocks ? &rough : e;
+}
+
+void ritz_search_choose(ritz_mode_search *s)
+{
+    ritz_search_size size = {
+        .n = s->S.K->nrow, .k = s->ask, .accuracy = s->span->accuracy};
+    ritz_eigen_engine chosen = RITZ_EIGEN_LANCZOS;
+
+    if (s->span->engine != RITZ_EIGEN_AUTO || !s->S.A ||
+        ritz_trial_here()->engine != RITZ_EIGEN_AUTO)
+        return;
+    ritz_factor_size(s->S.A, &size.entries, &size.operations);
+    chosen = ritz_engine_choose(&size, ritz_memory_fits, &s->reason);
+    if (chosen != RITZ_EIGEN_LANCZOS)
+        s->engine = &engines[chosen];
 }
 
 /* Have the search repeated with smaller residuals, and to rounding as soon as

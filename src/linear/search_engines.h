@@ -31,8 +31,9 @@ typedef struct ritz_mode_search {
     int64_t num_heavy;
     double broken; /* -sigma at which the factor broke down */
     int64_t ask;
-    int64_t misses; /* how often the count found more */
-    bool all;       /* found holds every finite mode */
+    int64_t misses;     /* how often the count found more */
+    bool all;           /* found holds every finite mode */
+    const char *reason; /* why this engine was chosen; NULL: it was named */
     const ritz_search_engine *engine;
     const ritz_trial *size;
     const ritz_factor_use *use; /* of the factor before the count, or NULL */
@@ -74,10 +75,14 @@ ritz_status ritz_find_by_blocks(ritz_mode_search *s, ritz_dense *X,
 /* The engine that takes over where another one fails. */
 extern const ritz_search_engine ritz_search_reliable;
 
-/** The engine of a span. With an accuracy block Lanczos ends earlier, and auto
- * takes it, as it was the fastest on all models measured; a test may set another
- * engine for auto, but not where an accuracy is requested. */
+/** The engine of a span, block Lanczos for auto: with an accuracy it ends
+ * earlier. A test may set another engine for auto, but not where an accuracy is
+ * requested. */
 const ritz_search_engine *ritz_search_engine_of(const ritz_span *span);
+
+/** Choose the engine of a span with auto, unless a test has set it, once s->ask
+ * modes are to be found with the factor s->S.A: see engine_choice.h. */
+void ritz_search_choose(ritz_mode_search *s);
 
 /** Choose how to search again after an approximate engine whose errors are too
  * large, or that missed a mode. */

@@ -263,6 +263,8 @@ char *cli_json(const json_t *value, size_t flags);
 
 /** Set method and order (-1: none) in the line that --record appends. */
 void cli_record(cli_run *run, const char *method, int64_t order);
+/** Record which engine found modes, and why it was chosen; NULL: no choice. */
+void cli_record_engine(cli_run *run, const char *engine, const char *reason);
 void cli_record_error(cli_run *run, const char *name, double value);
 /** Record why an error, a bound, is large; "": no cause. */
 void cli_record_cause(cli_run *run, const char *name, const char *cause);

@@ -296,6 +296,14 @@ void cli_record(cli_run *run, const char *method, int64_t order)
         json_object_set_new(run->line, "order", json_integer(order));
 }
 
+void cli_record_engine(cli_run *run, const char *engine, const char *reason)
+{
+    if (*engine)
+        json_object_set_new(run->line, "engine", cli_string(engine));
+    if (reason)
+        json_object_set_new(run->line, "reason", cli_string(reason));
+}
+
 /* The object with this key in the line that --record appends. */
 static json_t *find_recorded(cli_run *run, const char *key)
 {

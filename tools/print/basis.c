@@ -265,6 +265,7 @@ ritz_status basis_run(cli_run *run, basis_options *given)
            request->space ? m.states.units : m.component.units,
            sizeof made.basis.units);
     sign_configuration(&m, &made.basis.origin);
+    cli_record_engine(run, made.basis.origin.engine, made.basis.origin.reason);
     RITZ_CHECK(describe_output(run, &made));
     describe_disk(run);
     say_basis(run, &made.basis);

@@ -320,9 +320,12 @@ static void describe_origin(cli_run *run, const ritz_origin *o)
 {
     sink_set(run, "method,options,engine", "%s %s %s", o->method, o->options,
              o->engine);
-    sink_field(run, "method", "", "%s (%s) [%s]%s%s", o->method,
+    if (o->reason)
+        sink_set(run, "reason", "%s", o->reason);
+    sink_field(run, "method", "", "%s (%s) [%s]%s%s%s%s", o->method,
                *o->options ? o->options : "no options", o->reference,
-               *o->engine ? ", " : "", o->engine);
+               *o->engine ? ", " : "", o->engine, o->reason ? ": " : "",
+               o->reason ? o->reason : "");
 }
 
 /* Values of a balanced basis: some of them, and all in JSON. */
