@@ -19,7 +19,6 @@
  */
 #include "linear/engine_choice.h"
 
-#include <float.h>
 #include <math.h>
 
 /* Time of an operation, in multiples of that of a large matrix product. */
@@ -36,8 +35,6 @@ static const double MARGIN = 1.1; /* by which slices must be faster, because
 enum {
     LEAF = 200, /* rows of a substructure */
     SIDE = 100, /* of slices */
-    SLICE_BASIS =
-        1000, /* vectors that a slice has in addition to those found */
 };
 
 static double slices_of(double k)
@@ -45,100 +42,66 @@ static double slices_of(double k)
     return k > 2 * SIDE ? ceil((k - SIDE) / (2 * SIDE)) : 0.0;
 }
 
-static ritz_engine_cost cost_of_lanczos(const ritz_search_size *s)
+static double cost_of_lanczos(const ritz_search_size *s)
 {
     const double n = (double)s->n, k = (double)s->k;
     const double m = s->accuracy > 0.0 ? 2.3 * k + 100.0 : 2.5 * k + 240.0;
 
-    return (ritz_engine_cost){
-        .operations = SOLVE * 4.0 * s->entries * m +
-                      BASIS * 2.0 * n * m * (m + k) + SMALL * 9.0 * m * m * m,
-        .bytes = 8.0 * (n * (4.0 * k + 96.0) + 48.0 * k * k)};
+    return SOLVE * 4.0 * s->entries * m + BASIS * 2.0 * n * m * (m + k) +
+           SMALL * 9.0 * m * m * m;
 }
 
-static ritz_engine_cost cost_of_slices(const ritz_search_size *s)
+/* Up to 200 modes slices are block Lanczos. They find pairs to rounding, and
+   state no bounds of errors. */
+static double cost_of_slices(const ritz_search_size *s)
 {
     const double n = (double)s->n, k = (double)s->k;
     const double v = 3.3 * k;
 
-    return (ritz_engine_cost){
-        .operations =
-            MARGIN *
-            (FACTOR * s->operations * slices_of(k) +
-             SINGLE * 4.0 * s->entries * v +
-             BASIS * (4.0 * n * 3.0 * SIDE * v + 2.0 * n * k * k) +
-             SMALL * 9.0 * pow(6.0 * SIDE, 3.0) * (slices_of(k) + 1.0)),
-        .bytes = 8.0 * n * (k + SLICE_BASIS)};
+    if (s->k <= 2 * SIDE || s->accuracy > 0.0)
+        return HUGE_VAL;
+    return MARGIN * (FACTOR * s->operations * slices_of(k) +
+                     SINGLE * 4.0 * s->entries * v +
+                     BASIS * (4.0 * n * 3.0 * SIDE * v + 2.0 * n * k * k) +
+                     SMALL * 9.0 * pow(6.0 * SIDE, 3.0) * (slices_of(k) + 1.0));
 }
 
-/* With an accuracy slices come last: they find pairs to rounding, and state no
-   bounds of errors. */
-static ritz_engine_cost cost_of_exact(const ritz_search_size *s)
-{
-    ritz_engine_cost cost = cost_of_slices(s);
-
-    if (s->accuracy > 0.0)
-        cost.operations = DBL_MAX;
-    return cost;
-}
-
-static ritz_engine_cost cost_of_amls(const ritz_search_size *s)
+static double cost_of_amls(const ritz_search_size *s)
 {
     const double n = (double)s->n, k = 1.5 * (double)s->k;
     const double r = 6.0 * k + LEAF;
 
-    return (ritz_engine_cost){
-        .operations =
-            FRONTS *
-            (FACTOR * 3.0 * s->operations + SMALL * 4.0 / 3.0 * r * r * r +
-             3.0 * (SOLVE * 4.0 * s->entries * k + 6.0 * n * k * k)),
-        .bytes = 8.0 * (3.0 * n * k + r * (r + 3.0 * k))};
+    if (!(s->accuracy > 0.0))
+        return HUGE_VAL;
+    return FRONTS *
+           (FACTOR * 3.0 * s->operations + SMALL * 4.0 / 3.0 * r * r * r +
+            3.0 * (SOLVE * 4.0 * s->entries * k + 6.0 * n * k * k));
 }
 
-ritz_engine_cost ritz_engine_cost_of(ritz_eigen_engine engine,
-                                     const ritz_search_size *size)
+double ritz_engine_cost(ritz_eigen_engine engine, const ritz_search_size *size)
 {
-    const ritz_engine_cost none = {HUGE_VAL, HUGE_VAL};
-
     switch (engine) {
     case RITZ_EIGEN_LANCZOS:
         return cost_of_lanczos(size);
-    case RITZ_EIGEN_SLICES: /* up to so many modes they are block Lanczos */
-        return size->k > 2 * SIDE ? cost_of_exact(size) : none;
+    case RITZ_EIGEN_SLICES:
+        return cost_of_slices(size);
     case RITZ_EIGEN_AMLS:
-        return size->accuracy > 0.0 ? cost_of_amls(size) : none;
+        return cost_of_amls(size);
     case RITZ_EIGEN_AUTO:
     case RITZ_EIGEN_ARPACK:
         break;
     }
-    return none;
+    return HUGE_VAL;
 }
 
-ritz_eigen_engine ritz_engine_choose(const ritz_search_size *size,
-                                     bool (*fits)(int64_t bytes),
-                                     const char **reason)
+ritz_eigen_engine ritz_engine_choose(const ritz_search_size *size)
 {
-    static const ritz_eigen_engine engines[] = {
-        RITZ_EIGEN_LANCZOS, RITZ_EIGEN_SLICES, RITZ_EIGEN_AMLS};
-    enum { ENGINES = sizeof engines / sizeof *engines };
-    ritz_engine_cost cost[ENGINES] = {0};
-    int fastest = 0;
-    int smallest = 0;
-    int best = -1;
+    static const ritz_eigen_engine others[] = {RITZ_EIGEN_SLICES,
+                                               RITZ_EIGEN_AMLS};
+    ritz_eigen_engine best = RITZ_EIGEN_LANCZOS;
 
-    for (int e = 0; e < ENGINES; e++) {
-        cost[e] = ritz_engine_cost_of(engines[e], size);
-        if (cost[e].operations < cost[fastest].operations)
-            fastest = e;
-        if (cost[e].bytes < cost[smallest].bytes)
-            smallest = e;
-        if (cost[e].bytes < (double)INT64_MAX &&
-            (best < 0 || cost[e].operations < cost[best].operations) &&
-            fits((int64_t)cost[e].bytes))
-            best = e;
-    }
-    *reason = best == fastest ? "the fastest by prediction"
-              : best >= 0     ? "the fastest that fits into memory"
-                              : "it needs the least memory";
-    return engines[best >= 0 ? best : smallest];
+    for (size_t e = 0; e < sizeof others / sizeof *others; e++)
+        if (ritz_engine_cost(others[e], size) < ritz_engine_cost(best, size))
+            best = others[e];
+    return best;
 }

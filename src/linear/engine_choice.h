@@ -4,9 +4,7 @@
 
 #include <ritz/matrix.h>
 
-#include <stdbool.h>
-
-/** What the time and memory of a search depend on. */
+/** What the time of a search depends on. */
 typedef struct ritz_search_size {
     int64_t n;         /* dofs */
     int64_t k;         /* modes to be found */
@@ -15,26 +13,13 @@ typedef struct ritz_search_size {
     double accuracy;   /* requested, 0: to rounding */
 } ritz_search_size;
 
-/** An engine with its predictions. */
-typedef struct ritz_engine_cost {
-    double operations; /* in multiples of those of a large matrix product */
-    double bytes;      /* beside the factor */
-} ritz_engine_cost;
+/** Predict the time of RITZ_EIGEN_LANCZOS, _SLICES or _AMLS, in operations of a
+ * large matrix product. HUGE_VAL for any other engine, for slices with an
+ * accuracy or with few modes, and for substructures without an accuracy. */
+double ritz_engine_cost(ritz_eigen_engine engine, const ritz_search_size *size);
 
-/** Predict the cost of RITZ_EIGEN_LANCZOS, _SLICES or _AMLS; that of any other
- * engine is HUGE_VAL, and so is that of substructures without an accuracy. */
-ritz_engine_cost ritz_engine_cost_of(ritz_eigen_engine engine,
-                                     const ritz_search_size *size);
-
-/**
- * The engine with the least time of those that fit into the memory allowed. If
- * none fits, it is the one with the least memory.
- *
- * @param[in]  fits    whether so many bytes fit (ritz_memory_fits())
- * @param[out] reason  one phrase, a constant
- */
-ritz_eigen_engine ritz_engine_choose(const ritz_search_size *size,
-                                     bool (*fits)(int64_t bytes),
-                                     const char **reason);
+/** The fastest engine by this prediction. Memory has no part in the choice, so
+ * that results do not depend on it: a basis that does not fit is on disk. */
+ritz_eigen_engine ritz_engine_choose(const ritz_search_size *size);
 
 #endif

@@ -263,7 +263,8 @@ void ritz_search_choose(ritz_mode_search *s)
         ritz_trial_here()->engine != RITZ_EIGEN_AUTO)
         return;
     ritz_factor_size(s->S.A, &size.entries, &size.operations);
-    chosen = ritz_engine_choose(&size, ritz_memory_fits, &s->reason);
+    chosen = ritz_engine_choose(&size);
+    s->reason = "the fastest by prediction";
     if (chosen != RITZ_EIGEN_LANCZOS)
         s->engine = &engines[chosen];
 }
