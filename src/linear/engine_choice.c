@@ -8,7 +8,7 @@
  *                     SOLVE 4 l m + BASIS 2 n m (m + k) + SMALL 9 m^3
  *     slices          s = (k - 100) / 200 factors more, v = 3.3 k vectors, each
  *                     orthogonal to 300 others on average:
- *                     MARGIN (FACTOR f s + SINGLE 4 l v
+ *                     1.1 (FACTOR f s + SINGLE 4 l v
  *                     + BASIS (4 n 300 v + 2 n k^2) + SMALL 9 600^3 (s + 1))
  *     substructures   three factors with dense fronts, a reduced matrix of order
  *                     r = 6 g + 200, three inverse iterations with g = 1.5 k vectors:
@@ -22,19 +22,26 @@
 #include <math.h>
 
 /* Time of an operation, in multiples of that of a large matrix product. */
-static const double SOLVE = 4.0;  /* sixteen right-hand sides */
-static const double SINGLE = 5.5; /* eight */
-static const double BASIS = 0.5;  /* sixteen vectors and a basis: fewer vectors
-                                     than m on plates */
-static const double SMALL = 2.5;  /* eigenvectors of a small matrix */
-static const double FACTOR = 1.5;
-static const double FRONTS = 5.0; /* small dense matrices, and estimates */
-static const double MARGIN = 1.1; /* by which slices must be faster, because
-                                     predictions err by as much */
+static const struct {
+    double solve;  /* sixteen right-hand sides */
+    double single; /* eight */
+    double basis;  /* sixteen vectors and a basis: fewer vectors than m on
+                      plates */
+    double small;  /* eigenvectors of a small matrix */
+    double factor;
+    double fronts; /* small dense matrices, and estimates */
+} time_of = {.solve = 4.0,
+             .single = 5.5,
+             .basis = 0.5,
+             .small = 2.5,
+             .factor = 1.5,
+             .fronts = 5.0};
 
 enum {
     LEAF = 200, /* rows of a substructure */
     SIDE = 100, /* of slices */
+    MARGIN = 10 /* percent by which slices must be faster, because predictions
+                   err by as much */
 };
 
 static double slices_of(double k)
@@ -47,8 +54,9 @@ static double cost_of_lanczos(const ritz_search_size *s)
     const double n = (double)s->n, k = (double)s->k;
     const double m = s->accuracy > 0.0 ? 2.3 * k + 100.0 : 2.5 * k + 240.0;
 
-    return SOLVE * 4.0 * s->entries * m + BASIS * 2.0 * n * m * (m + k) +
-           SMALL * 9.0 * m * m * m;
+    return time_of.solve * 4.0 * s->entries * m +
+           time_of.basis * 2.0 * n * m * (m + k) +
+           time_of.small * 9.0 * m * m * m;
 }
 
 /* Up to 200 modes slices are block Lanczos. They find pairs to rounding, and
@@ -60,10 +68,11 @@ static double cost_of_slices(const ritz_search_size *s)
 
     if (s->k <= 2 * SIDE || s->accuracy > 0.0)
         return HUGE_VAL;
-    return MARGIN * (FACTOR * s->operations * slices_of(k) +
-                     SINGLE * 4.0 * s->entries * v +
-                     BASIS * (4.0 * n * 3.0 * SIDE * v + 2.0 * n * k * k) +
-                     SMALL * 9.0 * pow(6.0 * SIDE, 3.0) * (slices_of(k) + 1.0));
+    return (1.0 + MARGIN / 100.0) *
+           (time_of.factor * s->operations * slices_of(k) +
+            time_of.single * 4.0 * s->entries * v +
+            time_of.basis * (4.0 * n * 3.0 * SIDE * v + 2.0 * n * k * k) +
+            time_of.small * 9.0 * pow(6.0 * SIDE, 3.0) * (slices_of(k) + 1.0));
 }
 
 static double cost_of_amls(const ritz_search_size *s)
@@ -73,9 +82,10 @@ static double cost_of_amls(const ritz_search_size *s)
 
     if (!(s->accuracy > 0.0))
         return HUGE_VAL;
-    return FRONTS *
-           (FACTOR * 3.0 * s->operations + SMALL * 4.0 / 3.0 * r * r * r +
-            3.0 * (SOLVE * 4.0 * s->entries * k + 6.0 * n * k * k));
+    return time_of.fronts *
+           (time_of.factor * 3.0 * s->operations +
+            time_of.small * 4.0 / 3.0 * r * r * r +
+            3.0 * (time_of.solve * 4.0 * s->entries * k + 6.0 * n * k * k));
 }
 
 double ritz_engine_cost(ritz_eigen_engine engine, const ritz_search_size *size)
