@@ -14,8 +14,9 @@
 #include <string.h>
 
 /*
- * The number of eigenvalues above x: of positive pivots of T - x = L D L', column
- * by column, without exchange of rows. `room` holds what the columns so far have
+ * The number of eigenvalues above x: of positive pivots of T - x = L D L',
+ * column by column, without exchange of rows. `room` holds what the columns so
+ * far have
  * left of the next width + 1 columns, column j in slot j modulo width + 1.
  */
 static int64_t count_above(const ritz_band *T, double x, double *room)

@@ -10,8 +10,8 @@
  *                     orthogonal to 300 others on average:
  *                     1.1 (FACTOR f s + SINGLE 4 l v
  *                     + BASIS (4 n 300 v + 2 n k^2) + SMALL 9 600^3 (s + 1))
- *     substructures   three factors with dense fronts, a reduced matrix of order
- *                     r = 6 g + 200, three inverse iterations with g = 1.5 k vectors:
+ *     substructures   three factors with dense fronts, a reduced matrix of
+ *                     order r = 6 g + 200, three inverse iterations with g = 1.5 k vectors:
  *                     FRONTS (FACTOR 3 f + SMALL 4/3 r^3
  *                     + 3 (SOLVE 4 l g + 6 n g^2))
  *
