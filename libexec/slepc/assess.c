@@ -379,7 +379,7 @@ static ritz_status project_pairs(const assessor *a, const ritz_dense *Phi,
                                  int64_t first, projection *p)
 {
     const int64_t end = first + p->some_K.ncol;
-    const int64_t sums = p->some_K.nrow * p->some_K.ncol;
+    const int64_t entries = p->some_K.nrow * p->some_K.ncol;
     ritz_status status = RITZ_OK;
 
     for (int64_t j = first; j < end; j += WIDTH) {
@@ -394,8 +394,8 @@ static ritz_status project_pairs(const assessor *a, const ritz_dense *Phi,
             status = project_product(Phi, count, j - first, p, &p->some_M);
     }
     RANKS_CHECK(status);
-    ranks_sum(p->some_K.val, sums);
-    ranks_sum(p->some_M.val, sums);
+    ranks_sum(p->some_K.val, entries);
+    ranks_sum(p->some_M.val, entries);
     return RITZ_OK;
 }
 
