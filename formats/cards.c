@@ -90,7 +90,8 @@ static ritz_status skip_control(const char *path, ritz_lines *text,
     RITZ_REFUSE_IF(cases && !begun, RITZ_ERR_FORMAT,
                    "'%s' holds CEND but no BEGIN BULK",
                    path ? path : "the deck");
-    while (begun && text->number < trial.number) {
+    /* by bytes: a mapped file may have lost lines since they were counted */
+    while (begun && text->at < trial.at) {
         (void)ritz_lines_next(text);
         if (cases) {
             RITZ_CHECK(take_selection(text, "SPC", RITZ_SELECT_SPC, cards));

@@ -488,6 +488,17 @@ static ritz_status list_file(const ritz_foreign *file, ritz_listing *out)
     return RITZ_OK;
 }
 
+/* The header that was listed; NULL: a mapped file has lost it since. */
+static const ritz_dmig_header *find_header(const ritz_dmig_cards *all,
+                                           const ritz_listed *which)
+{
+    for (int64_t k = 0; k < all->num_headers; k++)
+        if (all->header[k].line == which->at &&
+            strcmp(all->header[k].name, which->name) == 0)
+            return &all->header[k];
+    return NULL;
+}
+
 static ritz_status read_matrix(const ritz_foreign *file,
                                const ritz_listed *which, ritz_matrix *out)
 {
@@ -495,8 +506,9 @@ static ritz_status read_matrix(const ritz_foreign *file,
     const ritz_dmig_header *header = NULL;
 
     RITZ_CHECK(take_deck(file, &all));
-    for (header = all.header; header->line != which->at;)
-        header++;
+    header = find_header(&all, which);
+    RITZ_REFUSE_IF(!header, RITZ_ERR_FORMAT, "DMIG '%s' has lost its header",
+                   which->name);
     sort_terms(header, &all);
     RITZ_CHECK(check_terms(header, &all));
     return make_matrix(header, all.term, out);
@@ -520,6 +532,7 @@ const ritz_format ritz_format_dmig = {
     .summary = "NASTRAN DMIG cards, in bulk data or a punch file",
     .reference = "Nastran1986",
     .recognise = recognise_dmig,
+    .maps = true,
     .list = list_file,
     .read = read_matrix,
 };

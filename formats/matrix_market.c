@@ -565,6 +565,7 @@ const ritz_format ritz_format_matrix_market = {
     .summary = "Matrix Market, coordinate or array",
     .reference = "BoisvertPozoRemington1996",
     .recognise = has_banner,
+    .maps = true,
     .list = list_file,
     .read = read_matrix,
 };

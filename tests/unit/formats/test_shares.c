@@ -7,10 +7,13 @@
 
 #include <ritz/import.h>
 
+#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 enum { THREADS = 3, ROWS = 1000 };
 
@@ -181,23 +184,35 @@ static void threads_read_matrix_market_as_one_does(void **state)
     compare_damages("shares.mtx");
 }
 
-/* One term in each column; then one card is damaged, and then a second one in
-   another share: the error names the first. */
+/* Cards of DMIG with one term in each column. */
+static void make_dmig(int cols, char **bytes, int64_t *size)
+{
+    enum { LINE = 80 };
+    char *text = calloc(3 * (size_t)cols + 4, LINE);
+    int64_t used = 0;
+
+    assert_non_null(text);
+    used += sprintf(text,
+                    "DMIG    KAA            0       9       2       0"
+                    "                %8d\n",
+                    cols);
+    for (int j = 1; j <= cols; j++)
+        used += sprintf(text + used,
+                        "DMIG*   KAA     %16d%16d\n*       %16d%16d%16.9E\n", j,
+                        1, j % 97 + 1, 3, sin((double)j));
+    *bytes = text;
+    *size = used;
+}
+
+/* One card is damaged, and then a second one in another share: the error names
+   the first. */
 static void threads_read_dmig_as_one_does(void **state)
 {
-    enum { COLS = 9000, LINE = 80 };
-    char *bytes = calloc(3 * COLS + 4, LINE);
+    char *bytes = NULL;
     int64_t size = 0;
     (void)state;
 
-    size += sprintf(bytes,
-                    "DMIG    KAA            0       9       2       0"
-                    "                %8d\n",
-                    COLS);
-    for (int64_t j = 1; j <= COLS; j++)
-        size += sprintf(bytes + size,
-                        "DMIG*   KAA     %16d%16d\n*       %16d%16d%16.9E\n",
-                        (int)j, 1, (int)(j % 97 + 1), 3, sin((double)j));
+    make_dmig(9000, &bytes, &size);
     assert_ok(compare_readings(bytes, size));
     bytes[size / 2] = 'x';
     assert_int_equal(compare_readings(bytes, size), RITZ_ERR_FORMAT);
@@ -364,6 +379,237 @@ static void a_mapped_file_that_is_changed_is_refused(void **)
     remove("shares.op4");
 }
 
+/* ---- texts that are mapped ----------------------------------------------- */
+
+static void make_market(char **bytes, int64_t *size)
+{
+    RITZ_OWN(ritz_matrix) m = {0};
+
+    make_matrix(200, &m);
+    assert_ok(ritz_matrix_market_write("shares.mtx", &m, "a comment"));
+    assert_ok(ritz_bytes_read("shares.mtx", size, bytes));
+}
+
+static void make_large_dmig(char **bytes, int64_t *size)
+{
+    make_dmig(45000, bytes, size);
+}
+
+/* Texts of 5 MB, which are mapped once a program wants it. */
+static const struct large_text {
+    const char *path;
+    char comment; /* begins a line that is not read */
+    void (*make)(char **bytes, int64_t *size);
+} large_texts[] = {
+    {"shares.mtx", '%', make_market},
+    {"shares.dmig", '$', make_large_dmig},
+};
+
+enum { NUM_LARGE = sizeof large_texts / sizeof *large_texts };
+
+static void write_text(const char *path, const char *bytes, int64_t size)
+{
+    FILE *file = fopen(path, "wb");
+
+    assert_non_null(file);
+    assert_int_equal(fwrite(bytes, 1, (size_t)size, file), size);
+    assert_int_equal(fclose(file), 0);
+}
+
+/* The text without its last end of line, and with a comment behind its first
+   line that makes its last page hold `rest` bytes, 0 for a full one. No byte
+   follows the copy, so that a sanitizer sees who reads beyond it. */
+static void fit_text(const struct large_text *text, int64_t rest, char **out,
+                     int64_t *size)
+{
+    const int64_t page = sysconf(_SC_PAGESIZE);
+    char *bytes = NULL;
+    int64_t head = 0, more = 0;
+
+    text->make(&bytes, size);
+    head = (char *)memchr(bytes, '\n', (size_t)*size) - bytes + 1;
+    *size -= 1;
+    more = 2 + (2 * page + rest - (*size + 2) % page) % page;
+    *out = malloc((size_t)(*size + more));
+    assert_non_null(*out);
+    memcpy(*out, bytes, (size_t)head);
+    memset(*out + head, text->comment, (size_t)more);
+    (*out)[head + more - 1] = '\n';
+    memcpy(*out + head + more, bytes + head, (size_t)(*size - head));
+    *size += more;
+    free(bytes);
+}
+
+/* Write the text and read the file by several threads: it is the same matrix, or
+   the same refusal, as of one thread that reads these bytes in memory. */
+static ritz_status compare_file(const char *path, const char *bytes,
+                                int64_t size, bool maps)
+{
+    RITZ_OWN(ritz_foreign) file = {0};
+    RITZ_OWN(ritz_matrices) copied = {0};
+    RITZ_OWN(ritz_matrix) read = {0};
+    char sentence[400], digest[RITZ_DIGEST_SIZE];
+    const ritz_status wanted = read_by(1, bytes, size, &copied, sentence);
+    ritz_status status = RITZ_OK;
+
+    write_text(path, bytes, size);
+    ritz_set_threads(THREADS);
+    assert_ok(ritz_foreign_open(path, &file));
+    assert_int_equal(file.mapped != NULL, maps);
+    status = ritz_foreign_list(&file);
+    if (status == RITZ_OK)
+        status = ritz_foreign_take(&file, 0, &read);
+    assert_int_equal(status, wanted);
+    if (status == RITZ_OK)
+        assert_same_matrix(&read, &copied.matrix[0]);
+    else
+        assert_string_equal(ritz_error_message(), sentence);
+    ritz_digest_bytes(bytes, (size_t)size, digest);
+    assert_string_equal(ritz_foreign_digest(&file), digest);
+    ritz_set_threads(1);
+    remove(path);
+    return status;
+}
+
+/* The word takes the place of the last value of the text. */
+static void spoil_last_value(char *bytes, int64_t size, const char *word)
+{
+    int64_t at = size - 1;
+
+    while (bytes[at - 1] != ' ')
+        at--;
+    assert_true(size - at > (int64_t)strlen(word));
+    memset(bytes + at, ' ', (size_t)(size - at));
+    memcpy(bytes + at, word, strlen(word));
+}
+
+/* Behind the last byte there is one zero of its page, or nothing. */
+static void mapped_texts_are_read_as_copied_ones(void **)
+{
+    static const char *const words[] = {"nan", "1e999"};
+    const int64_t page = sysconf(_SC_PAGESIZE);
+    const int64_t rests[] = {page - 1, 0};
+
+    ritz_map_files();
+    for (size_t k = 0; k < NUM_LARGE; k++)
+        for (size_t j = 0; j < sizeof rests / sizeof *rests; j++) {
+            const char *path = large_texts[k].path;
+            const bool maps = rests[j] > 0;
+            char *bytes = NULL;
+            int64_t size = 0;
+
+            fit_text(&large_texts[k], rests[j], &bytes, &size);
+            assert_int_equal(size % page, rests[j]);
+            assert_ok(compare_file(path, bytes, size, maps));
+            (void)compare_file(path, bytes, size - 4000, true);
+            spoil_last_value(bytes, size, words[j]);
+            assert_int_equal(compare_file(path, bytes, size, maps),
+                             RITZ_ERR_FORMAT);
+            free(bytes);
+        }
+}
+
+/* What another program does to a file that is mapped. */
+static void lengthen_file(const char *path, int64_t size)
+{
+    assert_int_equal(truncate(path, size + 1), 0);
+}
+
+/* The size is the same; the time of modification differs for certain. */
+static void blank_file(const char *path, int64_t size)
+{
+    const struct timespec times[2] = {{.tv_sec = 1}, {.tv_sec = 1}};
+    char *blanks = malloc((size_t)size);
+
+    assert_non_null(blanks);
+    memset(blanks, '\n', (size_t)size);
+    write_text(path, blanks, size);
+    assert_int_equal(utimensat(AT_FDCWD, path, times, 0), 0);
+    free(blanks);
+}
+
+#ifndef __SANITIZE_ADDRESS__ /* it lets no program handle SIGBUS */
+static void shorten_file(const char *path, int64_t)
+{
+    assert_int_equal(truncate(path, 100), 0);
+}
+
+static void empty_file(const char *path, int64_t)
+{
+    assert_int_equal(truncate(path, 0), 0);
+}
+#endif
+
+/* Change the file before its directory is read, or between that and reading. */
+static void change_text(const char *path, int64_t size, bool listed,
+                        void (*change)(const char *path, int64_t size))
+{
+    RITZ_OWN(ritz_foreign) file = {0};
+    RITZ_OWN(ritz_matrix) read = {0};
+
+    assert_ok(ritz_foreign_open(path, &file));
+    assert_non_null(file.mapped);
+    if (listed)
+        assert_ok(ritz_foreign_list(&file));
+    change(path, size);
+    assert_fails(listed ? ritz_foreign_take(&file, 0, &read)
+                        : ritz_foreign_list(&file),
+                 RITZ_ERR_FILE, "was changed while it was read");
+}
+
+static void mapped_texts_that_are_changed_are_refused(void **)
+{
+    static void (*const changes[])(const char *, int64_t) = {
+        lengthen_file,
+        blank_file,
+#ifndef __SANITIZE_ADDRESS__
+        shorten_file,
+        empty_file,
+#endif
+    };
+
+    ritz_map_files();
+    ritz_set_threads(THREADS);
+    for (size_t k = 0; k < NUM_LARGE; k++) {
+        const char *path = large_texts[k].path;
+        char *bytes = NULL;
+        int64_t size = 0;
+
+        fit_text(&large_texts[k], 1, &bytes, &size);
+        for (size_t j = 0; j < 2 * sizeof changes / sizeof *changes; j++) {
+            write_text(path, bytes, size);
+            change_text(path, size, j % 2 == 0, changes[j / 2]);
+        }
+        remove(path);
+        free(bytes);
+    }
+}
+
+/* As a file that is mapped may change unnoticed: its time is not exact. */
+static void a_header_of_dmig_that_is_lost_is_missed(void **)
+{
+    RITZ_OWN(ritz_matrix) read = {0};
+    char *bytes = NULL;
+    int64_t size = 0;
+
+    make_dmig(10, &bytes, &size);
+    for (int k = 0; k < 2; k++) {
+        RITZ_OWN(ritz_foreign)
+        file = {.bytes = bytes, .size = size, .format = &ritz_format_dmig};
+
+        assert_ok(ritz_foreign_list(&file));
+        if (k == 0) /* another matrix */
+            for (char *at = bytes; (at = strstr(at, "KAA"));)
+                *at = 'M';
+        else
+            memset(bytes, '\n', (size_t)size);
+        assert_fails(ritz_foreign_take(&file, 0, &read), RITZ_ERR_FORMAT,
+                     k == 0 ? "DMIG 'KAA' has lost its header"
+                            : "DMIG 'MAA' has lost its header");
+    }
+    free(bytes);
+}
+
 /* 9 MiB: large enough that several threads read pieces of 4 MiB. */
 static void a_file_read_in_pieces_has_its_bytes_and_digest(void **state)
 {
@@ -413,6 +659,10 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test_teardown(threads_read_each_matrix_of_a_file, one_thread),
     cmocka_unit_test_teardown(a_mapped_file_that_is_changed_is_refused,
                               one_thread),
+    cmocka_unit_test_teardown(mapped_texts_are_read_as_copied_ones, one_thread),
+    cmocka_unit_test_teardown(mapped_texts_that_are_changed_are_refused,
+                              one_thread),
+    cmocka_unit_test(a_header_of_dmig_that_is_lost_is_missed),
     cmocka_unit_test_teardown(a_file_read_in_pieces_has_its_bytes_and_digest,
                               one_thread),
 };
