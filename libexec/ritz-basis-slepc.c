@@ -24,8 +24,7 @@ static const char *file;
 
 /* --- options that this engine does not have ------------------------------- */
 
-static ritz_status refuse_options(const cli_run *run,
-                                  const basis_options *given)
+static void refuse_options(const cli_run *run, const basis_options *given)
 {
     const ritz_choice *choice = &given->request.choice;
     const struct {
@@ -36,13 +35,12 @@ static ritz_status refuse_options(const cli_run *run,
         {"--at", given->model.at != NULL},
         {"--order", given->model.order > 0},
         {"--interface-modes", choice->interface_modes > 0},
-        {"--memory", run->memory != NULL},
     };
 
     for (size_t k = 0; k < sizeof others / sizeof *others; k++)
-        RITZ_REFUSE_IF(others[k].given, RITZ_ERR_ARGUMENT,
-                       "engine slepc takes no %s", others[k].option);
-    return RITZ_OK;
+        if (others[k].given)
+            cli_refuse(run->program, "engine slepc takes no %s",
+                       others[k].option);
 }
 
 /* Refuse normal modes that would have static vectors. */
@@ -84,19 +82,20 @@ static const struct {
     {&ritz_method_normal_modes, make_free},
 };
 
-static ritz_status choose_method(const ritz_method *method, ritz_method *out)
+static void choose_method(const cli_run *run, const ritz_method *method,
+                          ritz_method *out)
 {
     for (size_t k = 0; k < sizeof methods / sizeof *methods; k++)
         if (methods[k].method == method) {
             *out = *method;
             out->make = methods[k].make;
             out->by_ranks = true;
-            return RITZ_OK;
+            return;
         }
-    return ritz_fail(RITZ_ERR_ARGUMENT,
-                     "engine slepc finds bases of craig-bampton and "
-                     "normal-modes, not of %s",
-                     method->name);
+    cli_refuse(run->program,
+               "engine slepc finds bases of craig-bampton and normal-modes, "
+               "not of %s",
+               method->name);
 }
 
 /* --- the tool ------------------------------------------------------------- */
@@ -119,8 +118,8 @@ static ritz_status run_in_ranks(cli_run *run, basis_options *given)
 {
     ritz_method method;
 
-    RITZ_CHECK(refuse_options(run, given));
-    RITZ_CHECK(choose_method(given->method, &method));
+    refuse_options(run, given);
+    choose_method(run, given->method, &method);
     given->method = &method;
     given->read = read_frame;
     return basis_run(run, given);

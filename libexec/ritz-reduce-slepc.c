@@ -48,8 +48,7 @@ static ritz_status project(const ritz_component *component,
 
 /* Refuse estimates, and options that change matrices or damping: rank 0 has no
    matrices of the component. */
-static ritz_status refuse_options(const cli_run *run,
-                                  const reduce_options *given)
+static void refuse_options(const cli_run *run, const reduce_options *given)
 {
     const struct {
         const char *option;
@@ -63,17 +62,17 @@ static ritz_status refuse_options(const cli_run *run,
     };
 
     for (size_t k = 0; k < sizeof others / sizeof *others; k++)
-        RITZ_REFUSE_IF(others[k].given, RITZ_ERR_ARGUMENT,
-                       "engine slepc takes no %s", others[k].option);
-    RITZ_REFUSE_IF(!given->estimates || strcmp(given->estimates, "none") != 0,
-                   RITZ_ERR_ARGUMENT,
+        if (others[k].given)
+            cli_refuse(run->program, "engine slepc takes no %s",
+                       others[k].option);
+    if (!given->estimates || strcmp(given->estimates, "none") != 0)
+        cli_refuse(run->program,
                    "engine slepc makes no estimates: say --estimates none");
-    return RITZ_OK;
 }
 
 static ritz_status run_in_ranks(cli_run *run, reduce_options *given)
 {
-    RITZ_CHECK(refuse_options(run, given));
+    refuse_options(run, given);
     given->read = read_frame;
     given->project = project;
     return reduce_run(run, given);

@@ -1,10 +1,12 @@
 #include "factor.h"
 
 #include "base/alloc.h"
+#include "base/memory.h"
 #include "linear/ordering.h"
 #include "ranks.h"
 
 #include <dmumps_c.h>
+#include <inttypes.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,12 +28,15 @@ enum {
     ENTRIES = 17,
     RIGHT_SIDES = 19,
     SOLUTION = 20,
+    ON_DISK = 21,
     NULL_PIVOTS = 23,
     ANALYSIS = 27,
     OUTCOME = 0,          /* of INFOG */
     NEGATIVE_PIVOTS = 11, /* of INFOG */
     NUM_NULL_PIVOTS = 27, /* of INFOG */
     OWN_PIVOTS = 22,      /* of INFO */
+    ROOM = 14,            /* of INFO */
+    DISK_ROOM = 16,       /* of INFO, if factors are on disk */
 };
 
 /* Values of these controls. */
@@ -68,6 +73,7 @@ struct rank_factor {
     MUMPS_INT *place;  /* in rank 0: pivot of each row, from 1 */
     MUMPS_INT *pivots; /* rows of the solution in this rank, from 1 */
     route route;       /* of the present factor, from its first solve on */
+    int64_t null_row;  /* in rank 0: of a pivot that is zero; -1: none */
 };
 
 static void call_mumps(rank_factor *F, int job)
@@ -306,6 +312,7 @@ static ritz_status order_rows(rank_factor *F, const pattern *p)
     RITZ_OWN(ritz_sparse) A = {0};
     ritz_status status = RITZ_OK;
 
+    ritz_monitor_step("order of rows", 0, 0);
     if (F->id.icntl[ORDERING] != GIVEN_ORDER)
         return RITZ_OK;
     RITZ_CHECK(gather_pattern(F, p, &A));
@@ -387,6 +394,30 @@ static void start_mumps(rank_factor *F)
     set_controls(F);
 }
 
+/*
+ * Refuse a factor that would not fit on one of the machines, by the limit of
+ * rank 0. MUMPS estimates the memory of each rank, in millions of bytes.
+ */
+static ritz_status admit_factor(const rank_factor *F)
+{
+    const bool on_disk = F->id.icntl[ON_DISK] != 0;
+    int64_t needed[2] = {
+        F->id.info[on_disk ? DISK_ROOM : ROOM] * INT64_C(1000000), 1};
+    MPI_Comm machine = MPI_COMM_NULL;
+    char what[64];
+
+    MPI_Comm_split_type(PETSC_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0,
+                        MPI_INFO_NULL, &machine);
+    MPI_Allreduce(MPI_IN_PLACE, needed, 2, MPI_INT64_T, MPI_SUM, machine);
+    MPI_Comm_free(&machine);
+    MPI_Allreduce(MPI_IN_PLACE, needed, 2, MPI_INT64_T, MPI_MAX,
+                  PETSC_COMM_WORLD);
+    snprintf(what, sizeof what,
+             "the factor in %" PRId64 " rank(s) of one machine", needed[1]);
+    return ranks_agree(ranks_own() == 0 ? ritz_memory_admit(what, needed[0])
+                                        : RITZ_OK);
+}
+
 static ritz_status analyse_pattern(rank_factor *F)
 {
     RITZ_OWN(pattern) p = {0};
@@ -402,8 +433,10 @@ static ritz_status analyse_pattern(rank_factor *F)
     F->id.irn_loc = F->row;
     F->id.jcn_loc = F->column;
     F->id.a_loc = F->value;
+    ritz_monitor_step("analysis", 0, 0);
     call_mumps(F, ANALYSE);
-    return report_failure(F);
+    RITZ_CHECK(report_failure(F));
+    return admit_factor(F);
 }
 
 ritz_status rank_factor_new(Mat K, Mat M, rank_factor **out)
@@ -413,6 +446,7 @@ ritz_status rank_factor_new(Mat K, Mat M, rank_factor **out)
     PetscInt to = 0;
 
     RANKS_CHECK_NEW(F, 1);
+    F->null_row = -1;
     F->K = K;
     F->M = M;
     ranks_expect(MatGetOwnershipRange(K, &from, &to));
@@ -445,12 +479,14 @@ static ritz_status shift_entries(rank_factor *F, double sigma)
 
 /* If delayed pivots need more workspace than the analysis predicted, repeat with
    twice as much in addition. */
-ritz_status rank_factor_make(rank_factor *F, double sigma, int64_t *negative)
+ritz_status rank_factor_make(rank_factor *F, double sigma, const char *step,
+                             int64_t *negative)
 {
     free(F->pivots);
     F->pivots = NULL;
     route_free(&F->route);
     RANKS_CHECK(shift_entries(F, sigma));
+    ritz_monitor_step(step, 0, 0);
     call_mumps(F, FACTOR);
     while (needs_room(F) && F->id.icntl[ROOM_PERCENT] < MOST_ROOM) {
         F->id.icntl[ROOM_PERCENT] *= 2;
@@ -458,10 +494,18 @@ ritz_status rank_factor_make(rank_factor *F, double sigma, int64_t *negative)
     }
     RITZ_CHECK(report_failure(F));
     *negative = F->id.infog[NEGATIVE_PIVOTS];
+    F->null_row = -1;
+    if (F->id.infog[NUM_NULL_PIVOTS] > 0 && ranks_own() == 0)
+        F->null_row = F->id.pivnul_list[0] - 1;
     RITZ_REFUSE_IF(F->id.infog[NUM_NULL_PIVOTS] > 0, RITZ_ERR_SINGULAR,
                    "the matrix is singular, %d pivots are zero",
                    F->id.infog[NUM_NULL_PIVOTS]);
     return RITZ_OK;
+}
+
+int64_t rank_factor_null_row(const rank_factor *F)
+{
+    return F->null_row;
 }
 
 /* --- solves --------------------------------------------------------------- */

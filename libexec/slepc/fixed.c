@@ -134,6 +134,7 @@ static ritz_status collect_columns(const rank_work *w, const ritz_dofs *b)
     columns_at at = {w->target, 0, NULL, 0};
     ritz_status status = RITZ_OK;
 
+    ritz_monitor_step("columns of the basis", 0, 0);
     if (w->target)
         status = label_columns(w, b);
     RANKS_CHECK(status);
@@ -242,7 +243,8 @@ static void keep_column(void *state, int64_t column, const double *x)
 }
 
 /* Fail with a sentence that names the dofs that move freely. */
-static ritz_status refuse_free(const rank_work *w, modes *found)
+static ritz_status refuse_free(const rank_work *w, modes *found, int64_t weak,
+                               int64_t negative)
 {
     ritz_pairs *P = &found->pairs;
     ritz_status status = RITZ_OK;
@@ -258,27 +260,43 @@ static ritz_status refuse_free(const rank_work *w, modes *found)
     status = RITZ_ERR_SINGULAR;
     if (w->target)
         status = ritz_refuse_mechanism(w->target->request->component,
-                                       &w->target->interior, P, -1, 0);
+                                       &w->target->interior, P, weak, negative);
     return ranks_agree(status);
 }
 
-/* K_ii is not positive definite: find the motions that cost no energy, to name
-   their dofs in the message. */
+/* The number of negative eigenvalues, beyond what ten digits of K_ii leave of
+   zeros; 0 if they cannot be counted. */
+static ritz_status count_negative(rank_work *w, int64_t *out)
+{
+    const ritz_status status = rank_pencil_count(
+        &w->pencil, -RITZ_RIGID_DIGITS * w->pencil.typical, out);
+
+    if (status != RITZ_ERR_SINGULAR)
+        return status;
+    *out = 0;
+    return RITZ_OK;
+}
+
+/* K_ii is not positive definite: find its lowest mode, to name the dofs that
+   move freely or have negative energy, or those without stiffness and mass. */
 static ritz_status explain_singular(rank_work *w)
 {
-    const ritz_span rigid_only = {.modes = 0};
+    const ritz_span lowest = {.modes = 1};
+    const int64_t weak = rank_factor_null_row(w->pencil.F);
     RITZ_OWN(modes) found = {0};
     ritz_status status = modes_shift(&w->pencil, false, 0.0);
+    int64_t negative = 0;
 
     if (status == RITZ_OK)
-        status = modes_find(&w->pencil, &rigid_only, 0.0, 0, &found);
-    if (status == RITZ_OK)
-        return refuse_free(w, &found);
+        status = modes_find(&w->pencil, &lowest, 0.0, 0, &found);
     if (status == RITZ_ERR_MEMORY)
         return status;
+    RITZ_CHECK(count_negative(w, &negative));
+    if (status == RITZ_OK)
+        return refuse_free(w, &found, weak, negative);
     if (w->target)
         (void)ritz_refuse_mechanism(w->target->request->component,
-                                    &w->target->interior, NULL, -1, 0);
+                                    &w->target->interior, NULL, weak, negative);
     return ranks_agree(RITZ_ERR_SINGULAR);
 }
 
@@ -288,19 +306,22 @@ static ritz_status find_constraint_modes(rank_work *w)
 {
     if (!w->rows.load)
         return RITZ_OK;
+    ritz_monitor_step("constraint modes", 0, 0);
     ranks_expect(MatDuplicate(w->rows.load, MAT_DO_NOT_COPY_VALUES, &w->Psi));
     RITZ_CHECK(rank_pencil_solve(&w->pencil, w->rows.load, w->Psi));
     ranks_expect(MatDestroy(&w->rows.load));
     return RITZ_OK;
 }
 
-static ritz_status find_modes(rank_work *w, double limit, int64_t goal)
+static ritz_status find_modes(rank_work *w, const char *what, double limit,
+                              int64_t goal)
 {
     const ritz_pairs *P = &w->modes.pairs;
 
-    RITZ_CHECK(modes_find(&w->pencil, &w->task->span, limit, goal, &w->modes));
+    RITZ_CHECK_IN(
+        what, modes_find(&w->pencil, &w->task->span, limit, goal, &w->modes));
     if (w->task->held && P->num_rigid > 0)
-        return refuse_free(w, &w->modes);
+        return ritz_context(refuse_free(w, &w->modes, -1, 0), what);
     RITZ_REFUSE_IF(P->Phi.ncol > 0 && P->num_rigid == 0 && P->lambda[0] <= 0.0,
                    RITZ_ERR_SINGULAR,
                    "K is not positive semidefinite: an eigenvalue is %.3g",
@@ -316,7 +337,7 @@ static ritz_status solve_interior(rank_work *w)
     double limit = 0.0;
     int64_t goal = 0;
 
-    RITZ_CHECK(rank_pencil_new(w->rows.K, w->rows.M, &w->pencil));
+    RITZ_CHECK_IN(what, rank_pencil_new(w->rows.K, w->rows.M, &w->pencil));
     RITZ_CHECK_IN(what,
                   modes_foresee(&w->pencil, &w->task->span, &limit, &goal));
     status = modes_shift(&w->pencil, w->task->held, limit);
@@ -326,7 +347,7 @@ static ritz_status solve_interior(rank_work *w)
     RITZ_CHECK_IN("constraint modes", find_constraint_modes(w));
     RITZ_CHECK_IN("static vectors", respond_interior(w));
     if (w->task->span.modes != 0 || !w->task->held)
-        RITZ_CHECK_IN(what, find_modes(w, limit, goal));
+        RITZ_CHECK(find_modes(w, what, limit, goal));
     return ritz_context(choose_statics(w), "static vectors");
 }
 
@@ -349,6 +370,7 @@ static ritz_status work_together(const task *t, const char *path,
     for (int64_t j = 0; j < b->count; j++)
         position[ritz_search(b->count, sorted.at, b->at[j])] = j;
     w.frame = (rows_frame){path, t->num_dofs, b->count, sorted.at, position};
+    ritz_monitor_step("matrices", 0, 0);
     RITZ_CHECK(rows_read(&w.frame, &w.rows));
     if (w.rows.interior > 0)
         RITZ_CHECK(solve_interior(&w));

@@ -90,6 +90,21 @@ static void take_pairs(EPS eps, int64_t count, Mat X, double *lambda)
     }
 }
 
+/* SLEPc fails, in all ranks, if an x'M x is negative. */
+static ritz_status solve_pencil(EPS eps)
+{
+    PetscErrorCode code = 0;
+
+    ritz_monitor_step("eigenvectors", 0, 0);
+    ranks_tolerate(PETSC_ERR_USER_INPUT);
+    code = EPSSolve(eps);
+    ranks_tolerate(0);
+    RITZ_REFUSE_IF(code == PETSC_ERR_USER_INPUT, RITZ_ERR_SINGULAR,
+                   "mass is not positive definite");
+    ranks_expect(code);
+    return RITZ_OK;
+}
+
 ritz_status krylov_lowest(rank_pencil *p, int64_t ask, int64_t room, Mat *X,
                           double **lambda, int64_t *found)
 {
@@ -100,10 +115,10 @@ ritz_status krylov_lowest(rank_pencil *p, int64_t ask, int64_t room, Mat *X,
     RANKS_CHECK_NEW(*lambda, ask);
     ranks_expect(EPSCreate(PETSC_COMM_WORLD, &eps));
     status = set_up(eps, p, ask, room);
-    if (status == RITZ_OK) {
-        ranks_expect(EPSSolve(eps));
+    if (status == RITZ_OK)
+        status = solve_pencil(eps);
+    if (status == RITZ_OK)
         ranks_expect(EPSGetConverged(eps, &converged));
-    }
     *found = converged < ask ? converged : ask;
     block_new(p->K, *found, X);
     take_pairs(eps, *found, *X, *lambda);

@@ -27,7 +27,8 @@ typedef struct rank_search {
     double sigma;  /* shift of the iteration; a count factors at other values */
     double broken; /* -sigma at which the factor broke down */
     int64_t ask, misses;
-    bool by_blocks; /* block Lanczos found them, not Krylov-Schur */
+    bool indefinite; /* the lowest eigenvalue is negative */
+    bool by_blocks;  /* block Lanczos found them, not Krylov-Schur */
     modes found;
 } rank_search;
 
@@ -61,9 +62,8 @@ ritz_status modes_foresee(rank_pencil *p, const ritz_span *span, double *limit,
         return RITZ_OK;
     for (size_t i = 0; i < 3 && status == RITZ_ERR_SINGULAR; i++) {
         *limit = lambda * (1.0 + above[i]);
-        status = rank_pencil_factor(p, *limit);
+        status = rank_pencil_count(p, *limit, target);
     }
-    *target = p->negative;
     return status;
 }
 
@@ -170,6 +170,14 @@ static ritz_status find_alone(const rank_pencil *p, const ritz_span *span,
     return RITZ_OK;
 }
 
+/* Whether the lowest eigenvalue is negative beyond its error, which is that of
+   its residual. */
+static bool is_negative(const ritz_pairs *P, const double *energy)
+{
+    return P->Phi.ncol > 0 && P->num_rigid == 0 &&
+           P->lambda[0] < -P->residual[0] * energy[0];
+}
+
 /* Improve the pairs by inverse iteration until their residuals are small
    enough. The vectors are then M-orthonormal and the eigenvalues ascend. */
 static ritz_status refine_pairs(rank_search *s)
@@ -189,6 +197,9 @@ static ritz_status refine_pairs(rank_search *s)
         RITZ_CHECK(block_polish(s->p, X, P->lambda));
         RITZ_CHECK(assessor_residuals(&a, X, P, energy, &worst));
     }
+    s->indefinite = is_negative(P, energy);
+    if (s->indefinite)
+        return RITZ_OK;
     RITZ_REFUSE_IF(!(worst <= RITZ_EIGEN_RESIDUAL), RITZ_ERR_CONVERGENCE,
                    "a residual of %.1e stays above %.0e", worst,
                    RITZ_EIGEN_RESIDUAL);
@@ -256,9 +267,8 @@ static ritz_status count_below(rank_search *s, int64_t k, int64_t *out)
     ritz_status status = RITZ_ERR_SINGULAR;
 
     for (size_t i = 0; i < 3 && status == RITZ_ERR_SINGULAR; i++)
-        status = rank_pencil_factor(
-            s->p, ritz_pairs_between(&s->found.pairs, k, parts[i]));
-    *out = s->p->negative;
+        status = rank_pencil_count(
+            s->p, ritz_pairs_between(&s->found.pairs, k, parts[i]), out);
     return status;
 }
 
@@ -340,6 +350,10 @@ static ritz_status search_proven(rank_search *s, int64_t *end, bool *alone)
         RITZ_CHECK(find_pairs(s));
         if (!s->found.X)
             continue;
+        if (s->indefinite) {
+            *end = 1; /* enough for the caller to refuse it */
+            return RITZ_OK;
+        }
         RITZ_CHECK(come_closer(s, &moved));
         if (moved)
             continue;

@@ -45,7 +45,10 @@ ritz_status modes_shift(rank_pencil *p, bool held, double limit);
  * span is uncounted. Collective. The factor of @p p may be another one
  * afterwards.
  *
- * @param[in] limit,target  of modes_foresee()
+ * @param[in]  limit,target  of modes_foresee()
+ * @param[out] out           if K has a negative eigenvalue, the lowest pair
+ *                           alone, of which neither the residual nor the count
+ *                           is verified
  * @return as ritz_eigen_sparse()
  */
 ritz_status modes_find(rank_pencil *p, const ritz_span *span, double limit,

@@ -2,12 +2,27 @@
 
 #include "base/alloc.h"
 #include "base/search.h"
+#include "base/tolerances.h"
 #include "ranks.h"
 
+#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* --- survey --------------------------------------------------------------- */
+
+/* Refuse a mass M_jj < 0 of the rank's rows, of which the first is `first`, unless
+   it may be rounding of the largest. */
+static ritz_status refuse_negative(PetscInt own, const double *m,
+                                   PetscInt first, double largest)
+{
+    for (PetscInt j = 0; j < own; j++)
+        RITZ_REFUSE_IF(m[j] < -RITZ_RIGID_DIGITS * largest, RITZ_ERR_SINGULAR,
+                       "mass is not positive definite: entry (%" PRId64
+                       ", %" PRId64 ") is %g",
+                       (int64_t)first + j, (int64_t)first + j, m[j]);
+    return RITZ_OK;
+}
 
 /* K_jj / M_jj of the rows of this rank where both are positive. */
 static ritz_status find_ratios(Mat K, Mat M, double **ratio, int *count)
@@ -15,6 +30,8 @@ static ritz_status find_ratios(Mat K, Mat M, double **ratio, int *count)
     const PetscScalar *k = NULL;
     const PetscScalar *m = NULL;
     ritz_status status = RITZ_OK;
+    double largest = 0.0;
+    PetscInt first = 0;
     PetscInt own = 0;
     Vec K_d = NULL;
     Vec M_d = NULL;
@@ -24,14 +41,15 @@ static ritz_status find_ratios(Mat K, Mat M, double **ratio, int *count)
     ranks_expect(MatGetDiagonal(K, K_d));
     ranks_expect(MatGetDiagonal(M, M_d));
     ranks_expect(VecGetLocalSize(K_d, &own));
+    ranks_expect(VecGetOwnershipRange(K_d, &first, NULL));
+    ranks_expect(VecMax(M_d, NULL, &largest));
     ranks_expect(VecGetArrayRead(K_d, &k));
     ranks_expect(VecGetArrayRead(M_d, &m));
     *ratio = ritz_zalloc(own, sizeof **ratio);
     for (PetscInt j = 0; *ratio && j < own; j++)
         if (k[j] > 0.0 && m[j] > 0.0)
             (*ratio)[(*count)++] = k[j] / m[j];
-    if (!*ratio)
-        status = RITZ_ERR_MEMORY;
+    status = *ratio ? refuse_negative(own, m, first, largest) : RITZ_ERR_MEMORY;
     ranks_expect(VecRestoreArrayRead(K_d, &k));
     ranks_expect(VecRestoreArrayRead(M_d, &m));
     ranks_expect(VecDestroy(&K_d));
@@ -111,12 +129,25 @@ ritz_status rank_pencil_new(Mat K, Mat M, rank_pencil *out)
 
 /* --- factors -------------------------------------------------------------- */
 
-ritz_status rank_pencil_factor(rank_pencil *p, double sigma)
+static ritz_status make_factor(rank_pencil *p, double sigma, const char *step)
 {
     if (!p->F)
         RITZ_CHECK(rank_factor_new(p->K, p->M, &p->F));
     p->sigma = sigma;
-    return rank_factor_make(p->F, sigma, &p->negative);
+    return rank_factor_make(p->F, sigma, step, &p->negative);
+}
+
+ritz_status rank_pencil_factor(rank_pencil *p, double sigma)
+{
+    return make_factor(p, sigma, "factor");
+}
+
+ritz_status rank_pencil_count(rank_pencil *p, double sigma, int64_t *out)
+{
+    const ritz_status status = make_factor(p, sigma, "count of modes");
+
+    *out = p->negative;
+    return status;
 }
 
 ritz_status rank_pencil_solve(const rank_pencil *p, Mat B, Mat X)

@@ -22,12 +22,18 @@ typedef struct rank_pencil {
     int64_t heavy;    /* columns of M that are not zero */
 } rank_pencil;
 
-/** Set `typical` and `heavy` from K and M; nothing is factored. Collective. */
+/** Set `typical` and `heavy` from K and M; nothing is factored. Collective.
+ * @return RITZ_ERR_SINGULAR if a diagonal entry of M is negative */
 ritz_status rank_pencil_new(Mat K, Mat M, rank_pencil *out);
 
 /** Factor K - sigma M. Collective.
  * @return as rank_factor_new() and rank_factor_make() */
 ritz_status rank_pencil_factor(rank_pencil *p, double sigma);
+
+/** The number of eigenvalues below sigma, by a factor that replaces the present
+ * one. Collective.
+ * @return as rank_pencil_factor() */
+ritz_status rank_pencil_count(rank_pencil *p, double sigma, int64_t *out);
 
 /** X := (K - sigma M)^-1 B for blocks with the rows of K; X is not B.
  * Collective.

@@ -5,7 +5,9 @@
 #include "base/alloc.h"
 #include "cli/cli.h"
 
+#include <fcntl.h>
 #include <slepceps.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -37,6 +39,13 @@ void ranks_abort(void)
     _exit(EXIT_FAILURE);
 }
 
+static PetscErrorCode tolerated; /* 0: none */
+
+void ranks_tolerate(PetscErrorCode code)
+{
+    tolerated = code;
+}
+
 /*
  * PETSc calls this when a function of it fails. If it fails in all ranks, the
  * message is to appear once: ranks above 0 wait a little, and rank 0 prints and
@@ -49,6 +58,8 @@ static PetscErrorCode complain_once(MPI_Comm comm, int line,
                                     const char *sentence, void *context)
 {
     (void)comm;
+    if (code == tolerated && code != 0)
+        return code;
     (void)line;
     (void)file;
     (void)type;
@@ -60,6 +71,26 @@ static PetscErrorCode complain_once(MPI_Comm comm, int line,
                  function ? function : "a function", ranks_own(),
                  sentence ? sentence : "no reason is given");
     ranks_abort();
+}
+
+/* Whether mpirun, which gets standard error of its processes through a pipe,
+   writes it to a terminal. */
+static bool ends_on_terminal(void)
+{
+    char path[48];
+    bool found = false;
+    int file = -1;
+
+    if (!getenv("OMPI_COMM_WORLD_RANK") && !getenv("PMI_RANK"))
+        return false;
+    snprintf(path, sizeof path, "/proc/%ld/fd/%d", (long)getppid(),
+             STDERR_FILENO);
+    file = open(path, O_WRONLY | O_NOCTTY | O_CLOEXEC);
+    if (file >= 0) {
+        found = isatty(file);
+        close(file);
+    }
+    return found;
 }
 
 void ranks_start(const char *tool)
@@ -79,6 +110,8 @@ void ranks_start(const char *tool)
         cli_complain("%s: PETSc and SLEPc do not start\n", tool);
         _exit(EXIT_FAILURE);
     }
+    if (ends_on_terminal())
+        cli_is_passed_on();
 }
 
 void ranks_stop(void)

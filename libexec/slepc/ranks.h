@@ -36,6 +36,10 @@ int ranks_count(void);
  * the reason. */
 void ranks_expect(PetscErrorCode code);
 
+/** From now on PETSc returns this error, which is one that all ranks have at once,
+ * instead of ending the run; 0: none. */
+void ranks_tolerate(PetscErrorCode code);
+
 /**
  * The common status of all ranks: RITZ_OK if @p own is RITZ_OK in each of them,
  * otherwise the status and the message of the lowest rank that failed.

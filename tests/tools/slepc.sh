@@ -167,23 +167,49 @@ fails() {
 }
 fails 1 'a rigid-body motion or mechanism left free? with the attached dofs held, 1 motion(s) cost no energy' \
     ranks 2 craig-bampton --modes 3 --attach '' --engine slepc m.h5
-fails 1 'finds bases of craig-bampton and normal-modes, not of macneal' \
+fails 2 'finds bases of craig-bampton and normal-modes, not of macneal' \
     ranks 2 macneal --modes 3 --engine slepc m.h5
-fails 1 'engine slepc takes no --interface-modes' ritz-basis craig-bampton \
+fails 2 'engine slepc takes no --interface-modes' ritz-basis craig-bampton \
     --modes 3 --interface-modes 2 --engine slepc m.h5
 fails 2 "no method 'craig'" ranks 2 craig --modes 3 --engine slepc m.h5
 fails 1 'makes no static vectors of inputs, outputs or dampers for a free' \
     ritz-basis normal-modes --modes 3 --engine slepc damped.h5
 fails 1 'static vectors: there is no load to respond to, no input' \
     ritz-basis craig-bampton --modes 3 --loads inputs --engine slepc m.h5
-fails 1 'engine slepc makes no estimates: say --estimates none' reduce 2 \
+fails 2 'engine slepc makes no estimates: say --estimates none' reduce 2 \
     --engine slepc damped.h5 damped.b.h5
-fails 1 'engine slepc makes no estimates: say --estimates none' ritz-reduce \
+fails 2 'engine slepc makes no estimates: say --estimates none' ritz-reduce \
     --engine=slepc --estimates frequency damped.h5 damped.b.h5
-fails 1 'engine slepc takes no --damping' ritz-reduce --engine slepc \
+fails 2 'engine slepc takes no --damping' ritz-reduce --engine slepc \
     --estimates none --damping 'modal 0.01' damped.h5 damped.b.h5
 fails 1 'is a basis for 484 dofs' reduce 2 --engine slepc --estimates none \
     rotor.h5 damped.b.h5
+works 'a larger membrane is made' check membrane 120
+expect 0 '' ritz-import -q --stiffness m.K.mtx --mass m.M.mtx --dofs m.dofs \
+    --port corner=1:3 -o large.h5
+fails 1 'are allowed (--memory)' ranks 2 craig-bampton --modes 3 --memory 10M \
+    --engine slepc large.h5
+
+# Matrices that no engine accepts are refused with the sentence of one process:
+# a stiffness and a mass that are negative at a dof, and a dof without stiffness.
+negate='NR > 2 && $1 == 200 && $2 == 200 { $3 = -$3 } { print }'
+remove='NR > 2 && ($1 == 200 || $2 == 200) { $3 = 0 } { print }'
+works 'the membrane is made again' check membrane $side
+awk "$negate" m.K.mtx >indefinite.mtx
+awk "$negate" m.M.mtx >negative.mtx
+awk "$remove" m.K.mtx >loose.mtx
+for case in 'indefinite.mtx m.M.mtx' 'm.K.mtx negative.mtx' 'loose.mtx m.M.mtx'; do
+    # shellcheck disable=SC2086 # words
+    set -- $case
+    expect 0 '' ritz-import -q --stiffness "$1" --mass "$2" --dofs m.dofs \
+        --port corner=1:3 -o sick.h5
+    ritz-basis -q craig-bampton --modes 3 sick.h5 -o out.h5 2>sentence || true
+    for n in 1 2; do
+        fails 1 "$(cat sentence)" ranks $n -q craig-bampton --modes 3 \
+            --engine slepc sick.h5
+    done
+done
+
 # only the last rank reads this entry
 cp m.h5 bad.h5
 check damage bad.h5 -1 nan unsealed

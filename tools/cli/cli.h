@@ -286,6 +286,10 @@ ritz_status cli_record_line(cli_run *run, json_t *line);
  */
 void cli_watch(cli_run *run);
 
+/** Show progress also if standard error is no terminal, because another program
+ * passes it on to one. To be called before the command line is read. */
+void cli_is_passed_on(void);
+
 /** From now on the program ends with status 1 if JSON gets no memory, and keeps
  * freed memory for its next arrays. */
 void cli_prepare(void);

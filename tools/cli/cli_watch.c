@@ -21,6 +21,7 @@ static volatile sig_atomic_t shown; /* a line of progress is on the screen */
 static double last;                 /* when it was written, by cli_clock */
 static cli_run *watched;            /* the run whose steps are observed */
 static bool on_terminal;            /* progress is shown */
+static bool passed_on;              /* by another program, to a terminal */
 
 static const char erase[] = "\r\033[K";
 
@@ -359,6 +360,11 @@ void cli_prepare(void)
     json_set_alloc_funcs(allocate_json, free);
 }
 
+void cli_is_passed_on(void)
+{
+    passed_on = true;
+}
+
 void cli_watch(cli_run *run)
 {
     watched = run;
@@ -366,7 +372,7 @@ void cli_watch(cli_run *run)
     for (int k = 0; k < run->num_operands; k++)
         walk_ahead(run->operand[k]);
     atexit(end_early);
-    on_terminal = !run->quiet && isatty(STDERR_FILENO);
+    on_terminal = !run->quiet && (passed_on || isatty(STDERR_FILENO));
     watch_signals();
     last = phase_began = cli_clock();
     phases[num_phases++] = (phase){"start", 0.0};
