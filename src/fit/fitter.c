@@ -300,6 +300,7 @@ static ritz_status open_component(const ritz_component *component,
     [[maybe_unused]] RITZ_OWN(ritz_spectra_lent) spectra =
         ritz_spectra_lend(f->spectra);
     ritz_verify_request *limits = &f->request.tolerance;
+    RITZ_OWN(ritz_fit_ahead) ahead = {0};
 
     RITZ_REFUSE_IF(!(limits->band_hz[1] > 0.0), RITZ_ERR_ARGUMENT,
                    "there is no band: where is the tolerance to hold");
@@ -316,7 +317,9 @@ static ritz_status open_component(const ritz_component *component,
     RITZ_CHECK(
         ritz_component_attached(component, f->request.attach, &f->attached));
     ritz_monitor_step("full model", 0, 0);
+    RITZ_CHECK(ritz_fit_ahead_begin(f, &ahead));
     RITZ_CHECK(refer_place(&f->request, &f->place[0]));
+    RITZ_CHECK(ritz_fit_ahead_store(&ahead));
     if (component->dampers.count == 0) /* bases are made without dampers */
         RITZ_CHECK(ritz_fit_estimator(f, component, &f->place[0]));
     f->largest = largest_order(f);

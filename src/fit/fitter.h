@@ -6,6 +6,7 @@
 #ifndef RITZ_FIT_FITTER_H
 #define RITZ_FIT_FITTER_H
 
+#include "base/aside.h"
 #include "linear/ordering.h"
 #include "linear/spectra.h"
 
@@ -126,6 +127,30 @@ struct ritz_fitter {
     int64_t largest; /* order to be tried */
     bool stopped;    /* request.stop said that the search shall end */
 };
+
+/* --- ahead.c -------------------------------------------------------------- */
+
+/* Fixed-interface modes that another thread computes. */
+typedef struct ritz_fit_ahead {
+    ritz_sparse K_ii, M_ii;
+    ritz_pairs modes; /* all of them, if `found` */
+    bool found;
+    ritz_aside aside;
+} ritz_fit_ahead;
+
+/**
+ * Begin to compute the modes of a component with its attached dofs fixed, if it
+ * is small and craig-bampton is among the methods.
+ *
+ * @param[in,out] out  empty; not moved before ritz_fit_ahead_free()
+ */
+ritz_status ritz_fit_ahead_begin(const ritz_fitter *fitter,
+                                 ritz_fit_ahead *out);
+
+/** Wait for the modes and put them into the store of this thread. */
+ritz_status ritz_fit_ahead_store(ritz_fit_ahead *ahead);
+
+void ritz_fit_ahead_free(ritz_fit_ahead *ahead);
 
 /* --- bodies.c ------------------------------------------------------------- */
 

@@ -191,6 +191,50 @@ static void errors_of_prefixes_do_not_depend_on_threads(void **state)
                             sizeof *one.nested.value.val);
 }
 
+static ritz_status open_again(const ordered_truss *o, int64_t methods_asked,
+                              int64_t *pencils)
+{
+    const ritz_method *const krylov[] = {&ritz_method_krylov_cms_fixed};
+    ritz_fit_request request = o->fitter->request;
+    RITZ_OWN(ritz_fitter) *again = NULL;
+
+    request.num_methods = methods_asked;
+    request.methods = krylov;
+    RITZ_CHECK(ritz_fitter_new(&o->truss, &request, &again));
+    *pencils = ritz_spectra_count(again->spectra);
+    return RITZ_OK;
+}
+
+/* Two pencils are solved if craig-bampton is among the methods: that of the
+   whole component and that of its interior. */
+static void fixed_modes_are_found_with_those_of_the_whole(void **state)
+{
+    RITZ_OWN(ordered_truss) o = {0};
+
+    (void)state;
+    open_truss("frequency=1e-3", 0, &o);
+    for (int threads = 1; threads <= 2; threads++) {
+        int64_t all = 0, krylov = 0;
+
+        ritz_set_threads(threads);
+        assert_ok(open_again(&o, 0, &all));
+        assert_ok(open_again(&o, 1, &krylov));
+        assert_int_equal(all, 2);
+        assert_int_equal(krylov, 1);
+    }
+    ritz_set_threads(1);
+}
+
+static void every_allocation_of_a_fitter_may_fail(void **state)
+{
+    RITZ_OWN(ordered_truss) o = {0};
+    int64_t pencils = 0;
+
+    (void)state;
+    open_truss("frequency=1e-3", 0, &o);
+    assert_survives_every_allocation(open_again(&o, 0, &pencils));
+}
+
 static ritz_status order_again(ordered_truss *o)
 {
     RITZ_OWN(ritz_nesting) n = {0};
@@ -216,6 +260,8 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(eigenvalues_rule_out_only_what_is_worse),
     cmocka_unit_test(the_order_has_the_same_bits_with_any_number_of_threads),
     cmocka_unit_test(errors_of_prefixes_do_not_depend_on_threads),
+    cmocka_unit_test(fixed_modes_are_found_with_those_of_the_whole),
+    cmocka_unit_test(every_allocation_of_a_fitter_may_fail),
     cmocka_unit_test(every_allocation_may_fail),
 };
 
