@@ -414,8 +414,7 @@ typedef struct ritz_pairs {
 
 /* How pairs of a large pencil are found. */
 typedef enum ritz_eigen_engine {
-    RITZ_EIGEN_AUTO,    /* LANCZOS, SLICES or AMLS, by predictions of their time
-                           and memory */
+    RITZ_EIGEN_AUTO,    /* the fastest of LANCZOS, SLICES, AMLS by prediction */
     RITZ_EIGEN_LANCZOS, /* block Lanczos at one shift */
     RITZ_EIGEN_ARPACK,  /* one vector at a time, for comparison */
     RITZ_EIGEN_SLICES,  /* block Lanczos at shifts within the spectrum */

@@ -24,6 +24,7 @@
 #include "base/memory.h"
 #include "base/tolerances.h"
 #include "bases/interior_statics.h"
+#include "linear/engine_choice.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -104,12 +105,21 @@ static ritz_status borrow_factor(void *of, const ritz_pairs *found,
     return A && sigma == 0.0 && !t->done ? find_statics(t, A) : RITZ_OK;
 }
 
-/* Whether the search still has the factor when it has found the modes. */
-static bool keeps_factor(const ritz_request *request)
+static bool gives_up_factor(ritz_eigen_engine engine)
+{
+    return engine == RITZ_EIGEN_SLICES || engine == RITZ_EIGEN_AMLS;
+}
+
+/* Whether the search still has the factor when it has found the modes. For modes
+   up to a frequency, whose number is not known yet, block Lanczos is assumed. */
+static bool keeps_factor(const ritz_request *request, const ritz_partition *s)
 {
     const ritz_span span = ritz_request_span(request);
 
-    return span.engine != RITZ_EIGEN_SLICES && span.engine != RITZ_EIGEN_AMLS;
+    if (!s->L || request->modes <= 0)
+        return !gives_up_factor(span.engine);
+    return !gives_up_factor(
+        ritz_engine_of(&span, s->L, s->K_ii.nrow, request->modes));
 }
 
 /* The requested number of modes, or all up to the requested frequency. */
@@ -127,13 +137,13 @@ static ritz_status find_normal_modes(static_task *t, ritz_pairs *out)
 /*
  * The modes, and then the statics: while the modes are found, memory has no
  * constraint modes to hold. The factor is made again only if the search moved
- * its shift away from zero.
+ * its shift away from zero, or gave it up for another engine.
  */
 static ritz_status find_interior(static_task *t, ritz_pairs *modes)
 {
     ritz_partition *s = t->s;
 
-    if (t->request->modes == 0 || !keeps_factor(t->request))
+    if (t->request->modes == 0 || !keeps_factor(t->request, s))
         RITZ_CHECK(find_statics(t, s->L));
     if (t->request->modes == 0)
         return ritz_dense_new(s->i.count, 0, &modes->Phi);
@@ -161,7 +171,7 @@ static ritz_foresight foresee_basis(const ritz_request *request,
 
     if (modes > 0)
         search = ritz_eigen_factored_needs(&s->K_ii, &s->M_ii, &span) +
-                 (keeps_factor(request) ? 0 : Psi);
+                 (keeps_factor(request, s) ? 0 : Psi);
     return (ritz_foresight){
         .beside = Psi + Phi > search ? Psi + Phi : search,
         .after = Psi + Phi + size * s->component->num_dofs * (b + modes)};

@@ -587,7 +587,7 @@ ritz_status ritz_eigen_search(const ritz_sparse *K, const ritz_sparse *M,
     ritz_dense_orient(&s.found.Phi);
     s.found.sigma = s.S.sigma;
     name_engine(&s);
-    s.found.reason = s.all ? NULL : s.reason;
+    s.found.reason = s.all || s.engine != s.chosen ? NULL : s.reason;
     RITZ_MOVE(*out, s.found);
     return RITZ_OK;
 }

@@ -19,6 +19,8 @@
  */
 #include "linear/engine_choice.h"
 
+#include "linear/factor.h"
+
 #include <math.h>
 
 /* Time of an operation, in multiples of that of a large matrix product. */
@@ -114,4 +116,15 @@ ritz_eigen_engine ritz_engine_choose(const ritz_search_size *size)
         if (ritz_engine_cost(others[e], size) < ritz_engine_cost(best, size))
             best = others[e];
     return best;
+}
+
+ritz_eigen_engine ritz_engine_of(const ritz_span *span, const ritz_factor *A,
+                                 int64_t n, int64_t k)
+{
+    ritz_search_size size = {.n = n, .k = k, .accuracy = span->accuracy};
+
+    if (span->engine != RITZ_EIGEN_AUTO)
+        return span->engine;
+    ritz_factor_size(A, &size.entries, &size.operations);
+    return ritz_engine_choose(&size);
 }

@@ -1,4 +1,4 @@
-/* Which engine finds modes where the user names none. For eigen_sparse.c alone. */
+/* Which engine finds modes where the user names none. */
 #ifndef RITZ_LINEAR_ENGINE_CHOICE_H
 #define RITZ_LINEAR_ENGINE_CHOICE_H
 
@@ -21,5 +21,10 @@ double ritz_engine_cost(ritz_eigen_engine engine, const ritz_search_size *size);
 /** The fastest engine by this prediction. Memory has no part in the choice, so
  * that results do not depend on it: a basis that does not fit is on disk. */
 ritz_eigen_engine ritz_engine_choose(const ritz_search_size *size);
+
+/** The engine that a span names, or the one chosen for @p k modes with the
+ * factor @p A of a matrix of @p n rows. */
+ritz_eigen_engine ritz_engine_of(const ritz_span *span, const ritz_factor *A,
+                                 int64_t n, int64_t k);
 
 #endif

@@ -227,10 +227,19 @@ static ritz_status find_by_amls(ritz_mode_search *s, ritz_dense *X,
     return find_by_slices(s, X, lambda, reach, end);
 }
 
+/* Before there is a factor it is not known whether slices will be chosen. */
+static int64_t needs_of_auto(const ritz_shifted *S, int64_t ask, bool folded)
+{
+    const int64_t blocks = ritz_block_lanczos_needs(S, ask, folded);
+    const int64_t slices = ritz_slices_need(S, ask);
+
+    return blocks < slices ? blocks : slices;
+}
+
 static const ritz_search_engine engines[] = {
     [RITZ_EIGEN_AUTO] = {.name = "block Lanczos",
                          .find = ritz_find_by_blocks,
-                         .needs = ritz_block_lanczos_needs},
+                         .needs = needs_of_auto},
     [RITZ_EIGEN_LANCZOS] = {.name = "block Lanczos",
                             .find = ritz_find_by_blocks,
                             .needs = ritz_block_lanczos_needs},
@@ -255,18 +264,16 @@ const ritz_search_engine *ritz_search_engine_of(const ritz_span *span)
 
 void ritz_search_choose(ritz_mode_search *s)
 {
-    ritz_search_size size = {
-        .n = s->S.K->nrow, .k = s->ask, .accuracy = s->span->accuracy};
     ritz_eigen_engine chosen = RITZ_EIGEN_LANCZOS;
 
     if (s->span->engine != RITZ_EIGEN_AUTO || !s->S.A ||
         ritz_trial_here()->engine != RITZ_EIGEN_AUTO)
         return;
-    ritz_factor_size(s->S.A, &size.entries, &size.operations);
-    chosen = ritz_engine_choose(&size);
+    chosen = ritz_engine_of(s->span, s->S.A, s->S.K->nrow, s->ask);
     s->reason = "the fastest by prediction";
     if (chosen != RITZ_EIGEN_LANCZOS)
         s->engine = &engines[chosen];
+    s->chosen = s->engine;
 }
 
 /* Have the search repeated with smaller residuals, and to rounding as soon as

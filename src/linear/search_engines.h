@@ -34,7 +34,7 @@ typedef struct ritz_mode_search {
     int64_t misses;     /* how often the count found more */
     bool all;           /* found holds every finite mode */
     const char *reason; /* why this engine was chosen; NULL: it was named */
-    const ritz_search_engine *engine;
+    const ritz_search_engine *engine, *chosen; /* now, and for that reason */
     const ritz_trial *size;
     const ritz_factor_use *use; /* of the factor before the count, or NULL */
     ritz_pairs found;
