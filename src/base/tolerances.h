@@ -293,6 +293,9 @@
    this part of theta |x|, norms by M. The vectors returned are more accurate,
    by one inverse iteration. */
 #define RITZ_LANCZOS_SETTLED 1e-10
+/* Rounding of eigenvalues that a count of ritz-fit compares, in multiples of eps
+   lambda_max: some hundred sums of terms of that size. */
+#define RITZ_SCREEN_ROUNDING 1e2
 /* The k-th largest eigenvalue of a band matrix is found within this, relative, to
    have its eigenvector: neighbours are some 1 / k apart. */
 #define RITZ_KTH_WITHIN 1e-7
@@ -410,7 +413,7 @@
    is made of is that of an independent column. The rounding is a bound: on a
    plate what it bounds was a hundred thousand times smaller. */
 #define RITZ_PIVOT_ROUNDING 1e1
-/* The same without rounding, of any matrix. */
+/* No pivot of a first block below this is strong, however small the rounding. */
 #define RITZ_PIVOT_CLEAR 1e-8
 /* |Q'WQ - I| of which the square, which the next pass leaves, is rounding. */
 #define RITZ_NEARLY_NORMAL 1e-8

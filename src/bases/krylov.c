@@ -230,7 +230,7 @@ static ritz_status append_loads(ritz_krylov *S, const ritz_krylov_point *point,
  * Append the responses to the inertia forces M Q of the last block of a point,
  * for as many columns at a time as a solve takes, until there are enough: of a
  * block that is cut, which is the last one, no more responses are found than
- * that takes. Q begins with the most independent of its columns.
+ * that takes. Each sixteen columns of Q begin with the most independent ones.
  */
 static ritz_status append_inertia(ritz_krylov *S, ritz_krylov_point *point,
                                   int64_t most)

@@ -12,6 +12,7 @@
 #include <ritz/base.h>
 #include <ritz/matrix.h>
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -189,9 +190,10 @@ static int64_t count_without(const ritz_pairs *modes, int64_t j, double x)
         const double part = ritz_dense_col(&modes->Phi, k)[j];
 
         below += modes->lambda[k] < x;
-        f += part * part / (modes->lambda[k] - x);
+        if (part != 0.0)
+            f += part * part / (modes->lambda[k] - x);
     }
-    return f > 0.0 ? below : below - 1;
+    return f > 0.0 || !isfinite(f) ? below : below - 1;
 }
 
 /*
@@ -207,12 +209,15 @@ static bool is_surely_worse(const ritz_nesting *n, int64_t j, double least)
     const double *band = n->f->request.tolerance.band_hz;
     const ritz_pairs *full = ritz_reference_pairs(n->f->place[0].reference);
     const double e = limit[RITZ_MEASURE_FREQUENCY] * least + RITZ_SAME;
+    const int64_t last = n->modes.Phi.ncol - 1;
+    const double rounding =
+        RITZ_SCREEN_ROUNDING * DBL_EPSILON * n->modes.lambda[last];
     const int64_t missing = (int64_t)fmax(0.0, ceil(least - 1.0) - 1.0);
     int64_t number = 0;
 
     for (int64_t k = full->num_rigid; k < full->Phi.ncol; k++) {
         const double hertz = ritz_eigen_hertz(full->lambda[k]);
-        const double x = full->lambda[k] * (1.0 + e) * (1.0 + e);
+        const double x = full->lambda[k] * (1.0 + e) * (1.0 + e) + rounding;
 
         if (hertz < band[0] || hertz > band[1])
             continue;
@@ -232,7 +237,7 @@ static bool can_screen(const ritz_nesting *n, double least)
 
     return isfinite(least) && n->modes.Phi.ncol > 0 &&
            n->modes.Phi.ncol == n->modes.Phi.nrow &&
-           !isnan(limit[RITZ_MEASURE_FREQUENCY]) &&
+           limit[RITZ_MEASURE_FREQUENCY] > 0.0 &&
            !(limit[RITZ_MEASURE_MISSING] > 0.0);
 }
 

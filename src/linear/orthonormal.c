@@ -3,7 +3,8 @@
  *
  *     R <- R - V (WV)' R                            (until no R shrinks)
  *     G = R' W R with columns scaled to one = L L', pivoted, as far as its
- *     pivots stay strong;   Q = R_pivots L^-T                (twice)
+ *     pivots stay strong, or, of the first block, above rounding;
+ *     Q = R_pivots L^-T                       (twice, or until Q'WQ = I)
  *
  * Columns whose pivot was weak go through all of it again, now against Q too,
  * until nothing of them is left: a round resolves only directions that rounding
@@ -407,12 +408,16 @@ static ritz_status compare_columns(const column_block *b, ritz_dense *G)
  * The least pivot of a strong column. Products of columns are known to eps times
  * the sizes of their terms, of which b->least is eps^2 times the square of
  * RITZ_ENTRY_ROUNDING: pivots far above this are those of independent columns.
+ * Beside other columns V only strong pivots are taken: what rounding leaves of V
+ * in R is divided by the square root of the pivot.
  */
-static double strong_pivot(const column_block *b)
+static double strong_pivot(const ritz_orthonormal *set, const column_block *b)
 {
     const double eps = RITZ_ENTRY_ROUNDING * DBL_EPSILON;
     double rounding = 0.0;
 
+    if (set->count > 0)
+        return RITZ_PIVOT_STRONG;
     for (int64_t j = 0; j < b->R.ncol; j++)
         rounding = fmax(rounding,
                         DBL_EPSILON * b->least[j] / (eps * eps * b->size[j]));
@@ -435,7 +440,7 @@ static ritz_status go_round(ritz_orthonormal *set, column_block *b,
     drop_columns(b, set->tolerance);
     if (b->R.ncol == 0)
         return RITZ_OK;
-    strong = strong_pivot(b);
+    strong = strong_pivot(set, b);
     RITZ_CHECK(compare_columns(b, &G));
     count = ritz_pivots_find(&G, strong, RITZ_TIE, most, order);
     for (int64_t j = 0; j < G.ncol; j++)
