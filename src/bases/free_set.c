@@ -161,7 +161,7 @@ static void measure_columns(int thread, int64_t from, int64_t to, void *task)
         for (int64_t i = 0; i < t->X->nrow; i++) { /* fmax() is slower */
             const double step = fabs(now[i] - before[i]);
 
-            moved = step > moved ? step : moved;
+            moved = step <= moved ? moved : step; /* NaN stays */
             size = fabs(now[i]) > size ? fabs(now[i]) : size;
         }
         t->change[j] = size > 0.0 ? moved / size : 0.0;
@@ -183,7 +183,7 @@ static ritz_status measure_change(const ritz_dense *Psi, ritz_dense *X,
         &(column_work){.Psi = Psi, .X = X, .least = least, .change = change});
     *out = 0.0;
     for (int64_t j = 0; j < X->ncol; j++)
-        *out = fmax(*out, change[j]);
+        *out = change[j] <= *out ? *out : change[j]; /* NaN stays */
     return RITZ_OK;
 }
 

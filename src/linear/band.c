@@ -34,7 +34,7 @@ static int64_t count_above(const ritz_band *T, double x, double *room)
         c[0] -= x;
         count += c[0] > 0.0;
         if (c[0] == 0.0)
-            c[0] = -DBL_MIN;
+            c[0] = -DBL_EPSILON * x;
         for (int64_t k = 1; k < end; k++) {
             double *next = room + (j + k) % ld * ld;
             const double part = c[k] / c[0];
@@ -56,7 +56,7 @@ ritz_status ritz_band_kth(const ritz_band *T, int64_t k, double *theta,
     double growth = RITZ_KTH_WITHIN;
 
     RITZ_CHECK_NEW(room, (T->width + 1) * (T->width + 1));
-    *exists = count_above(T, low, room) >= k;
+    *exists = low > 0.0 && count_above(T, low, room) >= k;
     *theta = 0.0;
     if (!*exists)
         return RITZ_OK;

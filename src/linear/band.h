@@ -17,7 +17,8 @@ typedef struct ritz_band {
 
 /**
  * The k-th largest eigenvalue of T, by bisection: within RITZ_KTH_WITHIN of it,
- * relative, and not above it but for rounding.
+ * relative, and not above it but for rounding. Pivots are not exchanged, so that
+ * a count near an eigenvalue of a leading block may be wrong: no more than a hint.
  *
  * @param[in,out] theta   a lower bound above 0; 0 if it was none
  * @param[out]    exists  whether k eigenvalues are above the lower bound

@@ -29,11 +29,18 @@ void ritz_block_list_free(ritz_block_list *V)
     *V = (ritz_block_list){0};
 }
 
+/* What does not fit into memory is lost with its file: for whoever goes on
+   without a result that needs too much memory, the causes are the same. */
+static ritz_status as_memory(ritz_status status)
+{
+    return status == RITZ_ERR_FILE ? RITZ_ERR_MEMORY : status;
+}
+
 ritz_status ritz_block_list_limit(ritz_block_list *V, int64_t held)
 {
-    RITZ_CHECK(ritz_spill_open("the Lanczos basis",
-                               (size_t)(V->count - held) * bytes_of(V->n),
-                               &V->file));
+    RITZ_CHECK(as_memory(
+        ritz_spill_open("the Lanczos basis",
+                        (size_t)(V->count - held) * bytes_of(V->n), &V->file)));
     RITZ_CHECK_RAW(V->window, WINDOW * V->n * B);
     V->held = held;
     return RITZ_OK;
@@ -51,13 +58,15 @@ static int64_t place_of(const ritz_block_list *V, int64_t j, int64_t r)
 static ritz_status read_rows(const ritz_block_list *V, int64_t j, int64_t r,
                              int64_t rows, double *to)
 {
-    return ritz_spill_read(&V->file, place_of(V, j, r), bytes_of(rows), to);
+    return as_memory(
+        ritz_spill_read(&V->file, place_of(V, j, r), bytes_of(rows), to));
 }
 
 static ritz_status write_rows(const ritz_block_list *V, int64_t j, int64_t r,
                               int64_t rows, const double *from)
 {
-    return ritz_spill_write(&V->file, place_of(V, j, r), bytes_of(rows), from);
+    return as_memory(
+        ritz_spill_write(&V->file, place_of(V, j, r), bytes_of(rows), from));
 }
 
 static ritz_status make_block(ritz_block_list *V, int64_t j)
