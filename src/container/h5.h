@@ -211,6 +211,10 @@ ritz_status ritz_h5_write_chunks(hid_t set, const char *name, hsize_t chunk,
                                  hsize_t count, const void *values,
                                  uint64_t *sum);
 
+/** Whether all chunks are stored as ritz_h5_write_chunks() does. Other programs
+ * may leave chunks out, or the filter of the last one: HDF5 reads these. */
+bool ritz_h5_chunks_usual(hid_t set, hsize_t chunk, hsize_t count);
+
 /** Read them. @return RITZ_ERR_FORMAT if the checksum of a chunk does not fit,
  * or a chunk has another size */
 ritz_status ritz_h5_read_chunks(hid_t set, const char *name, hsize_t chunk,

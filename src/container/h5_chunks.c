@@ -209,6 +209,19 @@ hsize_t ritz_h5_chunk(hid_t set, hid_t memory, const ritz_h5_shape *shape)
     return chunk;
 }
 
+bool ritz_h5_chunks_usual(hid_t set, hsize_t chunk, hsize_t count)
+{
+    for (hsize_t from = 0; from < count; from += chunk) {
+        hsize_t stored = 0;
+
+        if (chunk > SIZE_MAX / WORD - 1 ||
+            H5Dget_chunk_storage_size(set, &from, &stored) < 0 ||
+            stored != WORD * chunk + sizeof(uint32_t))
+            return false;
+    }
+    return true;
+}
+
 static hsize_t count_chunks(const vector_in_chunks *v)
 {
     return (v->count + v->chunk - 1) / v->chunk;

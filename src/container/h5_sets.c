@@ -377,7 +377,7 @@ static ritz_status read_values(hid_t set, const char *name, hid_t memory,
     uint64_t sum = RITZ_H5_SUM;
     herr_t result = 0;
 
-    if (chunk > 0 && count > 0) {
+    if (chunk > 0 && count > 0 && ritz_h5_chunks_usual(set, chunk, count)) {
         RITZ_CHECK(ritz_h5_read_chunks(set, name, chunk, count, values, &sum));
         return verify_sum(set, name, ritz_h5_sum_end(sum));
     }
