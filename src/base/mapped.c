@@ -38,7 +38,7 @@ static bool mend_map(ritz_mapped *mapped, const char *fault)
     const size_t from = (size_t)(fault - mapped->bytes) / page * page;
 
     atomic_store(&mapped->torn, true);
-    return mmap(mapped->bytes + from, mapped->size - from, PROT_READ,
+    return mmap(mapped->bytes + from, mapped->size + 1 - from, PROT_READ,
                 MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1, 0) != MAP_FAILED;
 }
 
@@ -50,7 +50,7 @@ static void handle_fault(int number, siginfo_t *info, void *context)
         ritz_mapped *mapped = atomic_load(&maps[k]);
 
         if (mapped && fault >= mapped->bytes &&
-            fault < mapped->bytes + mapped->size && mend_map(mapped, fault))
+            fault <= mapped->bytes + mapped->size && mend_map(mapped, fault))
             return;
     }
     if (before.sa_flags & SA_SIGINFO)

@@ -26,6 +26,7 @@ struct ritz_side_files {
     ritz_deck deck;
     ritz_row_names names;
     side_outcome of_deck, of_names;
+    bool later; /* they are read when one of them is asked for */
     ritz_aside aside;
 };
 
@@ -49,6 +50,14 @@ static void read_files(void *task)
                      &side->of_names);
 }
 
+/* Whether a pipe or a device is to be read; it is not before it is asked for. */
+static bool is_stream(const char *path)
+{
+    struct stat about;
+
+    return path && stat(path, &about) == 0 && !S_ISREG(about.st_mode);
+}
+
 /* Bytes of a file; 0 if it is not a regular one. */
 static int64_t measure_file(const char *path)
 {
@@ -69,9 +78,20 @@ ritz_status ritz_side_files_begin(const ritz_import_request *request,
 
     RITZ_CHECK_NEW(side, 1);
     side->request = request;
-    ritz_aside_begin(read_files, side, size >= LARGE, &side->aside);
+    side->later = is_stream(request->bulk) || is_stream(request->dofs);
+    if (!side->later)
+        ritz_aside_begin(read_files, side, size >= LARGE, &side->aside);
     *out = side;
     return RITZ_OK;
+}
+
+static void await_files(ritz_side_files *side)
+{
+    if (side->later)
+        read_files(side);
+    else
+        ritz_aside_end(&side->aside);
+    side->later = false;
 }
 
 static ritz_status tell_outcome(const side_outcome *of)
@@ -83,7 +103,7 @@ static ritz_status tell_outcome(const side_outcome *of)
 
 ritz_status ritz_side_files_deck(ritz_side_files *side, ritz_deck *out)
 {
-    ritz_aside_end(&side->aside);
+    await_files(side);
     RITZ_CHECK(tell_outcome(&side->of_deck));
     RITZ_MOVE(*out, side->deck);
     return RITZ_OK;
@@ -91,7 +111,7 @@ ritz_status ritz_side_files_deck(ritz_side_files *side, ritz_deck *out)
 
 ritz_status ritz_side_files_names(ritz_side_files *side, ritz_row_names *out)
 {
-    ritz_aside_end(&side->aside);
+    await_files(side);
     RITZ_CHECK(tell_outcome(&side->of_names));
     RITZ_MOVE(*out, side->names);
     return RITZ_OK;
