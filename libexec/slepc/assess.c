@@ -422,12 +422,14 @@ static ritz_status turn_pairs(const projection *p, ritz_pairs *P, ritz_dense *Q)
 ritz_status assessor_sharpen(const assessor *a, Mat X, const double *energy,
                              ritz_pairs *P)
 {
-    const int64_t lost = ritz_pairs_lost(P, energy) - P->num_rigid;
+    int64_t lost = ritz_pairs_lost(P, energy) - P->num_rigid;
+    double scale = 0.0; /* as of ritz_pairs_relate() */
     RITZ_OWN(projection) p = {0};
     RITZ_OWN(ritz_dense) Q = {0};
     ritz_status status = RITZ_OK;
     ritz_dense x;
 
+    ranks_share(&lost, (int64_t)sizeof lost); /* sums may differ by rounding */
     if (lost == 0)
         return RITZ_OK;
     RANKS_CHECK(allocate_projection(a, P->Phi.ncol, lost, &p));
@@ -438,5 +440,10 @@ ritz_status assessor_sharpen(const assessor *a, Mat X, const double *energy,
     if (status == RITZ_OK)
         status = ranks_agree(ritz_dense_times(&Q, &x));
     block_return(X, &x);
-    return status;
+    RITZ_CHECK(status);
+    for (int64_t j = 0; j < P->Phi.ncol; j++)
+        scale = fmax(scale, energy[j]);
+    P->num_rigid = ritz_eigen_rigid(P->Phi.ncol, P->lambda, scale);
+    ranks_share(&P->num_rigid, (int64_t)sizeof P->num_rigid);
+    return RITZ_OK;
 }

@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 enum {
@@ -73,19 +74,24 @@ static PetscErrorCode complain_once(MPI_Comm comm, int line,
     ranks_abort();
 }
 
-/* Whether mpirun, which gets standard error of its processes through a pipe,
-   writes it to a terminal. */
+/* Whether mpirun, which gets standard error of its processes through a pipe or a
+   terminal of its own, writes it to a terminal. */
 static bool ends_on_terminal(void)
 {
     char path[48];
+    struct stat own, other;
     bool found = false;
     int file = -1;
 
     if (!getenv("OMPI_COMM_WORLD_RANK") && !getenv("PMI_RANK"))
         return false;
+    if (fstat(STDERR_FILENO, &own) != 0 || S_ISREG(own.st_mode))
+        return false; /* sent to a file of its own */
     snprintf(path, sizeof path, "/proc/%ld/fd/%d", (long)getppid(),
              STDERR_FILENO);
-    file = open(path, O_WRONLY | O_NOCTTY | O_CLOEXEC);
+    if (stat(path, &other) != 0 || !S_ISCHR(other.st_mode))
+        return false;
+    file = open(path, O_WRONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
     if (file >= 0) {
         found = isatty(file);
         close(file);
