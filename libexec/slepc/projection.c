@@ -357,11 +357,13 @@ static ritz_status work_together(const projection_task *t, const char *path,
 
     s.from = rows_first_dof(&s.frame, ranks_own());
     s.to = rows_first_dof(&s.frame, ranks_own() + 1);
+    ritz_monitor_step("matrices", 0, 0);
     for (int k = 0; k < MATRICES; k++)
         RITZ_CHECK(read_matrix(&s, k));
     RANKS_CHECK(make_part(&s));
     RITZ_CHECK(distribute_basis(&s, T));
     RITZ_CHECK(choose_digits(&s, &twofold));
+    ritz_monitor_step("projection", 0, 0);
     RANKS_CHECK(ritz_congruences_of(&s.part, kind, &s.T, twofold, &sums));
     find_fastest(&s, &sums.fastest);
     add_congruences(&s, &sums);

@@ -3,6 +3,8 @@
 membrane SIDE [EVERY]: write m.K.mtx, m.M.mtx and m.dofs of a free square grid of
 SIDE x SIDE masses. Springs join neighbours, entries of M couple diagonal ones.
 With EVERY = 7, say, only every seventh dof has a mass, and M is diagonal.
+flaw KIND SIDE: the same with a mass of one on each grid, and a flaw at dof 250:
+`soft`: a spring of negative stiffness; `light`: a mass of -0.01.
 beam NUMBER: the same for equal masses in a row. Springs, no two alike, resist
 the bending at each mass.
 residual BASIS...: fail unless |lambda K^-1 M x - x| / |x| of all modes is below
@@ -20,16 +22,32 @@ import h5py
 import numpy as np
 
 
+def springs(side):
+    stiffness = {(k, k): 0.0 for k in range(side * side)}
+    for at in range(side * side):
+        for to in ([at + 1] if (at + 1) % side else []) + [at + side]:
+            if to < side * side:
+                stiffness[to, at] = -1.0
+                for k in at, to:
+                    stiffness[k, k] += 1.0
+    return stiffness
+
+
+def flaw(kind, side):
+    at = 249
+    stiffness = springs(int(side))
+    mass = {(k, k): 1.0 for k in range(int(side) ** 2)}
+    if kind == "soft":
+        stiffness[at, at] -= 5.0
+    else:
+        mass[at, at] = -0.01
+    write(int(side) ** 2, stiffness, mass)
+
+
 def membrane(side, every=1):
     side, every = int(side), int(every)
     n = side * side
-    stiffness = {}
-    for at in range(n):
-        for to in ([at + 1] if (at + 1) % side else []) + [at + side]:
-            if to < n:
-                stiffness[to, at] = -1.0
-                for k in at, to:
-                    stiffness[k, k] = stiffness.get((k, k), 0.0) + 1.0
+    stiffness = springs(side)
     mass = {(k, k): 1.0 for k in range(0, n, every)}
     if every == 1:  # entries of M where K has none, so that patterns differ
         for k in range(n - side):
@@ -161,6 +179,6 @@ def damage(path, entry, value, *how):
 
 
 if __name__ == "__main__":
-    {"membrane": membrane, "beam": beam, "residual": residual,
+    {"membrane": membrane, "flaw": flaw, "beam": beam, "residual": residual,
      "damping": damping, "alike": alike, "same": same, "damage": damage}[sys.argv[1]](
         *sys.argv[2:])

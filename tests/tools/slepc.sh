@@ -72,6 +72,11 @@ fixed='-q craig-bampton --attach rim m.h5'
         expect 0 '' ranks $n $fixed --modes 12 --engine slepc -o $n.h5
     done
     works 'bases agree on 1 and 4 ranks' check same 0.h5 1.h5 4.h5
+    expect 0 '' ranks 2 $fixed --modes 12 --engine slepc --memory 1G \
+        --record steps -o 2.h5
+    for step in 'order of rows' factor eigenvectors 'count of modes'; do
+        works "its steps are told: $step" grep -q "\"$step\"" steps
+    done
     # of one rank; with more, MUMPS distributes work while it runs, and last
     # digits differ
     expect 0 '' ritz-basis $fixed --modes 12 --engine slepc -o again.h5
@@ -207,6 +212,22 @@ for case in 'indefinite.mtx m.M.mtx' 'm.K.mtx negative.mtx' 'loose.mtx m.M.mtx';
     for n in 1 2; do
         fails 1 "$(cat sentence)" ranks $n -q craig-bampton --modes 3 \
             --engine slepc sick.h5
+    done
+done
+
+# Where one process says so of small models alone: the lowest mode of a negative
+# stiffness far beyond the first shift, and a small negative mass.
+for case in 'soft normal-modes K is not positive semidefinite: an eigenvalue is -1.83' \
+    'light craig-bampton mass is not positive definite: entry (248, 248) is -0.01'; do
+    # shellcheck disable=SC2086 # words
+    set -- $case
+    model=$1 method=$2
+    shift 2
+    works "a $model membrane is made" check flaw $model $side
+    expect 0 '' ritz-import -q --stiffness m.K.mtx --mass m.M.mtx \
+        --dofs m.dofs --port "corner=1:3" -o flaw.h5
+    for n in 1 2 4; do
+        fails 1 "$*" ranks $n $method --modes 3 --engine slepc flaw.h5
     done
 done
 
