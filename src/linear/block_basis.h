@@ -56,7 +56,7 @@ typedef struct ritz_basis_needs {
  *
  * @return RITZ_ERR_MEMORY if less than that must be in memory does not fit, which
  *         is the blocks kept, one more, and RITZ_BLOCK_WINDOW of the file;
- *         RITZ_ERR_FILE
+ *         also if the file cannot be opened
  */
 ritz_status ritz_block_basis_admit(ritz_block_basis *b,
                                    const ritz_basis_needs *needs);
@@ -65,7 +65,7 @@ void ritz_block_basis_free(ritz_block_basis *b);
 
 /** Let the step behind the blocks of V, which b->blocks does not count yet,
  * follow the first @p kept blocks; the others are no longer counted, and what
- * they hold is void. @return RITZ_ERR_FILE */
+ * they hold is void. @return RITZ_ERR_MEMORY if the file fails */
 ritz_status ritz_block_basis_move_step(ritz_block_basis *b, int64_t kept);
 
 /** V := one step of random vectors, multiplied by A^-1 M and orthonormalised.
@@ -76,13 +76,13 @@ ritz_status ritz_block_basis_begin(ritz_block_basis *b, bool *exhausted);
 void ritz_block_basis_multiply(const ritz_block_basis *b, double *X, double *Y);
 
 /** b->C := V'X for blocks [first, first + count) of V and @p width blocks of X,
- * in the order of ritz_blocks_project(). @return RITZ_ERR_FILE */
+ * in the order of ritz_blocks_project(). @return RITZ_ERR_MEMORY if the file fails */
 ritz_status ritz_block_basis_project(const ritz_block_basis *b, int64_t first,
                                      int64_t count, int64_t width,
                                      const double *X);
 
 /** X -= V b->C with the same blocks; b->C changes its sign.
- * @return RITZ_ERR_FILE */
+ * @return RITZ_ERR_MEMORY if the file fails */
 ritz_status ritz_block_basis_subtract(const ritz_block_basis *b, int64_t first,
                                       int64_t count, int64_t width, double *X);
 
@@ -103,7 +103,7 @@ double *ritz_block_basis_square(const ritz_block_basis *b, double *R, int64_t p,
  *                        of replaced vectors are zero
  * @param[out] exhausted  no direction was left for any vector of the first
  *                        block
- * @return RITZ_ERR_MEMORY; RITZ_ERR_FILE
+ * @return RITZ_ERR_MEMORY, also if the file fails
  */
 ritz_status ritz_block_basis_orthonormalise(ritz_block_basis *b, double size,
                                             double *R, bool *exhausted);

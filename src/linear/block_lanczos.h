@@ -66,9 +66,9 @@ typedef struct ritz_lanczos_plan {
  * @param[out]    end     FOUND; SLOW after 40 restarts, or if the room is too
  *                        small for one; EXHAUSTED if there are fewer than k
  *                        finite eigenvalues, or fewer than S->below below sigma
- * @return RITZ_ERR_MEMORY; RITZ_ERR_ARGUMENT if k is too large for LAPACK;
- *         RITZ_ERR_CONVERGENCE if LAPACK fails; RITZ_ERR_FILE if basis vectors
- *         that do not fit into memory cannot be in a file either
+ * @return RITZ_ERR_MEMORY, also if basis vectors that do not fit into memory
+ *         cannot be in a file either; RITZ_ERR_ARGUMENT if k is too large for
+ *         LAPACK; RITZ_ERR_CONVERGENCE if LAPACK fails
  * @cost   about 3 k / 8 solves of a block, or half as many of two blocks, and
  *         4 k vectors of memory, or k + 40 of memory and the others of a file
  */

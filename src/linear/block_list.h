@@ -33,7 +33,7 @@ void ritz_block_list_free(ritz_block_list *V);
 /**
  * From now on blocks from @p held on are put into a file. None has been put yet.
  *
- * @return RITZ_ERR_FILE as of ritz_spill_open(); RITZ_ERR_MEMORY
+ * @return RITZ_ERR_MEMORY, also if the file cannot be opened
  */
 ritz_status ritz_block_list_limit(ritz_block_list *V, int64_t held);
 
@@ -42,17 +42,17 @@ ritz_status ritz_block_list_limit(ritz_block_list *V, int64_t held);
  * of being copied leaves an array of the same size in *W.
  *
  * @param[in] exchange  whether *W is allocated alone, so that it may be
- * @return RITZ_ERR_MEMORY; RITZ_ERR_FILE
+ * @return RITZ_ERR_MEMORY, also if the file fails
  */
 ritz_status ritz_block_list_put(ritz_block_list *V, int64_t j, bool exchange,
                                 double **W);
 
 /** Block @p to becomes block @p from, which is void then.
- * @return RITZ_ERR_MEMORY; RITZ_ERR_FILE */
+ * @return RITZ_ERR_MEMORY, also if the file fails */
 ritz_status ritz_block_list_move(ritz_block_list *V, int64_t from, int64_t to);
 
 /** The address of block @p j, in memory until the next call that reads the
- * file. @return RITZ_ERR_FILE */
+ * file. @return RITZ_ERR_MEMORY if the file fails */
 ritz_status ritz_block_list_look(const ritz_block_list *V, int64_t j,
                                  const double **out);
 
@@ -60,18 +60,18 @@ ritz_status ritz_block_list_look(const ritz_block_list *V, int64_t j,
 void ritz_block_list_shorten(ritz_block_list *V, int64_t kept);
 
 /** ritz_blocks_project() for the blocks [first, first + count) of the list.
- * @return RITZ_ERR_FILE */
+ * @return RITZ_ERR_MEMORY if the file fails */
 ritz_status ritz_block_list_project(const ritz_block_list *V,
                                     const ritz_blocks *on, int64_t first,
                                     int64_t count, int64_t width,
                                     const double *X, double *C);
 
-/** ritz_blocks_add() for the same blocks. @return RITZ_ERR_FILE */
+/** ritz_blocks_add() for the same blocks. @return RITZ_ERR_MEMORY if the file fails */
 ritz_status ritz_block_list_add(const ritz_block_list *V, const ritz_blocks *on,
                                 int64_t first, int64_t count, int64_t width,
                                 const double *C, double *X);
 
-/** ritz_blocks_combine() of the list. @return RITZ_ERR_FILE */
+/** ritz_blocks_combine() of the list. @return RITZ_ERR_MEMORY if the file fails */
 ritz_status ritz_block_list_combine(const ritz_block_list *V,
                                     const ritz_blocks *on, int64_t count,
                                     int64_t kept, int64_t stride,

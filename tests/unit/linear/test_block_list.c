@@ -109,7 +109,7 @@ static void a_folder_that_is_not_there_is_refused(void **state)
     (void)state;
     assert_ok(ritz_block_list_new(N, BLOCKS, &V));
     setenv("TMPDIR", "/nowhere", 1);
-    assert_fails(ritz_block_list_limit(&V, 0), RITZ_ERR_FILE,
+    assert_fails(ritz_block_list_limit(&V, 0), RITZ_ERR_MEMORY,
                  "the Lanczos basis cannot be written to '/nowhere'");
     unsetenv("TMPDIR");
     assert_int_equal(V.held, BLOCKS);
