@@ -76,7 +76,8 @@ ritz_status ritz_block_basis_begin(ritz_block_basis *b, bool *exhausted);
 void ritz_block_basis_multiply(const ritz_block_basis *b, double *X, double *Y);
 
 /** b->C := V'X for blocks [first, first + count) of V and @p width blocks of X,
- * in the order of ritz_blocks_project(). @return RITZ_ERR_MEMORY if the file fails */
+ * in the order of ritz_blocks_project().
+ * @return RITZ_ERR_MEMORY if the file fails */
 ritz_status ritz_block_basis_project(const ritz_block_basis *b, int64_t first,
                                      int64_t count, int64_t width,
                                      const double *X);

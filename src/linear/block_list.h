@@ -66,12 +66,14 @@ ritz_status ritz_block_list_project(const ritz_block_list *V,
                                     int64_t count, int64_t width,
                                     const double *X, double *C);
 
-/** ritz_blocks_add() for the same blocks. @return RITZ_ERR_MEMORY if the file fails */
+/** ritz_blocks_add() for the same blocks.
+ * @return RITZ_ERR_MEMORY if the file fails */
 ritz_status ritz_block_list_add(const ritz_block_list *V, const ritz_blocks *on,
                                 int64_t first, int64_t count, int64_t width,
                                 const double *C, double *X);
 
-/** ritz_blocks_combine() of the list. @return RITZ_ERR_MEMORY if the file fails */
+/** ritz_blocks_combine() of the list.
+ * @return RITZ_ERR_MEMORY if the file fails */
 ritz_status ritz_block_list_combine(const ritz_block_list *V,
                                     const ritz_blocks *on, int64_t count,
                                     int64_t kept, int64_t stride,
