@@ -365,7 +365,7 @@ static ritz_status read_in_shares(const ritz_output4_reader *r,
     RITZ_OWN(ritz_output4_shares) all = {.marks = marks};
 
     *found = false;
-    if (threads < 2)
+    if (!marks || threads < 2)
         return RITZ_OK;
     RITZ_CHECK(begin_matrix(header, r->text.end - r->begin, &all.whole));
     all.whole.wide = r->wide;

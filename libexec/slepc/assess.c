@@ -410,7 +410,7 @@ static ritz_status turn_pairs(const projection *p, ritz_pairs *P, ritz_dense *Q)
     if (ranks_own() == 0)
         status = ritz_pairs_turn(P, &p->some_K, &p->some_M, &found);
     RANKS_CHECK(status);
-    if (ranks_own() == 0) {
+    if (ranks_own() == 0 && found.lambda) {
         memcpy(P->lambda, found.lambda, (size_t)pairs * sizeof *P->lambda);
         ritz_dense_put(&found.Phi, 0, 0, Q);
     }

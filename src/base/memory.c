@@ -99,8 +99,9 @@ static pages count_pages(void)
 
     if (!file)
         return p;
-    if (fscanf(file, "%*s %" SCNd64 " %" SCNd64 " %*s %*s %" SCNd64,
-               &p.resident, &p.files, &p.writable) != 3) /* NOLINT: as above */
+    if (fscanf(file, /* NOLINT: as above */
+               "%*s %" SCNd64 " %" SCNd64 " %*s %*s %" SCNd64, &p.resident,
+               &p.files, &p.writable) != 3)
         p = (pages){0};
     fclose(file);
     return p;

@@ -98,6 +98,7 @@ ritz_status ritz_band_vector(const ritz_band *T, double theta, double *z)
     const int n = (int)T->n;
     const int w = (int)T->width;
     const int ld = 3 * w + 1;
+    const int64_t diagonal = 2 * T->width;
     RITZ_OWN_ARRAY double *LU = NULL;
     RITZ_OWN_ARRAY lapack_int *pivot = NULL;
     uint64_t seed = 1986;
@@ -107,8 +108,8 @@ ritz_status ritz_band_vector(const ritz_band *T, double theta, double *z)
     spread_band(T, theta, LU);
     if (LAPACKE_dgbtrf(LAPACK_COL_MAJOR, n, n, w, w, LU, ld, pivot) > 0)
         for (int64_t j = 0; j < T->n; j++) /* theta is an eigenvalue: move it */
-            if (LU[2 * w + j * ld] == 0.0)
-                LU[2 * w + j * ld] = DBL_EPSILON * fabs(theta);
+            if (LU[diagonal + j * ld] == 0.0)
+                LU[diagonal + j * ld] = DBL_EPSILON * fabs(theta);
     for (int64_t i = 0; i < T->n; i++)
         z[i] = ritz_general_noise(&seed);
     for (int k = 0; k < 2; k++) {

@@ -68,7 +68,7 @@ static double cost_of_slices(const ritz_search_size *s)
     const double n = (double)s->n, k = (double)s->k;
     const double v = 3.3 * k;
 
-    if (s->k <= 2 * SIDE || s->accuracy > 0.0)
+    if (k <= 2.0 * SIDE || s->accuracy > 0.0)
         return HUGE_VAL;
     return (1.0 + MARGIN / 100.0) *
            (time_of.factor * s->operations * slices_of(k) +

@@ -39,8 +39,8 @@ int64_t ritz_lanczos_meanwhile(int64_t n, int64_t k, int64_t room)
     enum { THREADS = 4 }; /* more make little difference */
     const int64_t order = room * B;
     const int64_t coefficients =
-        2 * (order + WIDEST * B) * (k + RITZ_LANCZOS_SPARES) +
-        (1 + THREADS) * WIDEST * room * SQUARE;
+        2 * (order + (int64_t)WIDEST * B) * (k + RITZ_LANCZOS_SPARES) +
+        room * (1 + THREADS) * WIDEST * SQUARE;
 
     return (int64_t)sizeof(double) *
            (order * (2 * order + 9) + coefficients + 2 * n * B);

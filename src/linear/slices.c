@@ -417,7 +417,8 @@ ritz_status ritz_slices_lowest(ritz_shifted *S, int64_t k,
 int64_t ritz_slices_need(const ritz_shifted *S, int64_t k)
 {
     const int64_t n = S->K->nrow;
-    const int64_t found = k < 2 * SIDE ? k : 2 * SIDE + SIDE / BEYOND;
+    const int64_t most = INT64_C(2) * SIDE;
+    const int64_t found = k < most ? k : most + SIDE / BEYOND;
 
     return (int64_t)sizeof(double) * n * (k + SIDE + SPARE) +
            ritz_block_lanczos_needs(S, found, false);

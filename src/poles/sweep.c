@@ -18,14 +18,17 @@
 #include <math.h>
 #include <string.h>
 
-enum { BLOCK = 64 }; /* frequencies */
+enum {
+    BLOCK = 64,     /* frequencies */
+    PARTS = 2 * 64, /* real and imaginary ones of a block */
+};
 
 typedef struct block {
     int64_t count;
     double w[BLOCK], w2[BLOCK];
     double re[BLOCK], im[BLOCK];      /* g of a mode */
     double least[BLOCK], most[BLOCK]; /* squares that were divided by */
-    double *sum; /* num_outputs x num_inputs x 2 x BLOCK, row by row */
+    double *sum; /* num_outputs x num_inputs x PARTS, row by row */
 } block;
 
 static void block_free(block *b)
@@ -35,7 +38,7 @@ static void block_free(block *b)
 
 static ritz_status block_new(const ritz_io *io, block *b)
 {
-    RITZ_CHECK_RAW(b->sum, 2 * BLOCK * io->num_outputs * io->num_inputs);
+    RITZ_CHECK_RAW(b->sum, PARTS * io->num_outputs * io->num_inputs);
     return RITZ_OK;
 }
 
@@ -53,14 +56,13 @@ static bool is_sound(const block *b)
 static double *find_sums(const ritz_io *io, const block *b, int64_t i,
                          int64_t j)
 {
-    return b->sum + 2 * BLOCK * (i * io->num_inputs + j);
+    return b->sum + PARTS * (i * io->num_inputs + j);
 }
 
 static void begin_block(const ritz_io *io, block *b)
 {
     memset(b->sum, 0,
-           (size_t)(2 * BLOCK * io->num_outputs * io->num_inputs) *
-               sizeof *b->sum);
+           (size_t)(io->num_outputs * io->num_inputs * PARTS) * sizeof *b->sum);
     for (int64_t p = 0; p < b->count; p++) {
         b->least[p] = DBL_MAX;
         b->most[p] = 0.0;
@@ -73,8 +75,8 @@ static void end_block(const ritz_io *io, const block *b, double _Complex *H)
 
     for (int64_t e = 0; e < values; e++)
         for (int64_t p = 0; p < b->count; p++)
-            H[p * values + e] += ritz_complex(
-                b->sum[2 * BLOCK * e + p], b->sum[2 * BLOCK * e + BLOCK + p]);
+            H[p * values + e] += ritz_complex(b->sum[PARTS * e + p],
+                                              b->sum[PARTS * e + BLOCK + p]);
 }
 
 /* Add g of mode k times its participations. */

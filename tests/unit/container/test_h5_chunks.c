@@ -103,10 +103,10 @@ static void fill(int64_t count, double *values, int kind)
 
 static void assert_reads_back(int64_t count, const double *values)
 {
-    RITZ_OWN_ARRAY double *found = calloc((size_t)count, sizeof *found);
+    static double found[750001]; /* as many as any test has */
     uint64_t sum = 0;
 
-    assert_non_null(found);
+    assert_true(count <= (int64_t)(sizeof found / sizeof *found));
     assert_ok(read_vector(theirs, count, found, &sum));
     assert_memory_equal(found, values, (size_t)count * sizeof *found);
     assert_int_equal(sum, ritz_h5_sum(8 * count, values, RITZ_H5_SUM));

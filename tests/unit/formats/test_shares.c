@@ -252,9 +252,13 @@ strings_of_an_unmarked_file_are_read_as_one_thread_does(void **state)
 /* The place of a double in the middle of some bytes, or behind it. */
 static char *find_value(char *bytes, int64_t size, double value)
 {
-    for (int64_t k = size / 2; k + 8 <= size; k++)
-        if (memcmp(bytes + k, &value, sizeof value) == 0)
+    for (int64_t k = size / 2; k + 8 <= size; k++) {
+        double there = 0.0;
+
+        memcpy(&there, bytes + k, sizeof there);
+        if (there == value)
             return bytes + k;
+    }
     fail_msg("the file does not hold %g", value);
     return NULL;
 }
@@ -480,7 +484,8 @@ static void spoil_last_value(char *bytes, int64_t size, const char *word)
         at--;
     assert_true(size - at > (int64_t)strlen(word));
     memset(bytes + at, ' ', (size_t)(size - at));
-    memcpy(bytes + at, word, strlen(word));
+    for (int64_t k = 0; word[k]; k++)
+        bytes[at + k] = word[k];
 }
 
 /* Behind the last byte there is one zero of its page, or nothing. */
