@@ -27,7 +27,7 @@ static const ritz_format *recognise_format(const char *bytes, int64_t size)
 /* Map a file whose format allows that; others are copied. */
 static ritz_status read_file(const char *path, ritz_foreign *file)
 {
-    RITZ_CHECK(ritz_mapped_new(path, &file->mapped));
+    file->mapped = ritz_mapped_new(path);
     if (file->mapped) {
         file->bytes = ritz_mapped_bytes(file->mapped, &file->size);
         file->format = recognise_format(file->bytes, file->size);

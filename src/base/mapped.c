@@ -2,8 +2,6 @@
 
 #include "base/mapped.h"
 
-#include "base/alloc.h"
-
 #include <fcntl.h>
 #include <signal.h>
 #include <stdatomic.h>
@@ -18,27 +16,29 @@ enum {
 };
 
 struct ritz_mapped {
+    atomic_bool taken;
     int file;
-    struct stat about; /* when it was mapped */
-    char *bytes;
+    struct stat about;     /* when it was mapped */
+    _Atomic(char *) bytes; /* NULL: nothing is mapped */
     size_t size;
     atomic_bool torn; /* a part was gone when it was read */
 };
 
-/* The maps that exist, for the handler, which has no argument. */
-static _Atomic(ritz_mapped *) maps[MOST];
+/* All maps, for the handler, which has no argument: it may look at one that
+   another thread ends at that moment, so that their memory is never freed. */
+static ritz_mapped maps[MOST];
 static atomic_bool allowed;
 static struct sigaction before;
 
 /* Zeros in place of what follows the fault: the file has become shorter. The
    calls are those of the system, which a handler may use. */
-static bool mend_map(ritz_mapped *mapped, const char *fault)
+static bool mend_map(ritz_mapped *mapped, char *bytes, const char *fault)
 {
     const size_t page = (size_t)sysconf(_SC_PAGESIZE);
-    const size_t from = (size_t)(fault - mapped->bytes) / page * page;
+    const size_t from = (size_t)(fault - bytes) / page * page;
 
     atomic_store(&mapped->torn, true);
-    return mmap(mapped->bytes + from, mapped->size + 1 - from, PROT_READ,
+    return mmap(bytes + from, mapped->size + 1 - from, PROT_READ,
                 MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1, 0) != MAP_FAILED;
 }
 
@@ -47,10 +47,10 @@ static void handle_fault(int number, siginfo_t *info, void *context)
     const char *fault = info->si_addr;
 
     for (int k = 0; k < MOST; k++) {
-        ritz_mapped *mapped = atomic_load(&maps[k]);
+        char *bytes = atomic_load(&maps[k].bytes);
 
-        if (mapped && fault >= mapped->bytes &&
-            fault <= mapped->bytes + mapped->size && mend_map(mapped, fault))
+        if (bytes && fault >= bytes && fault <= bytes + maps[k].size &&
+            mend_map(&maps[k], bytes, fault))
             return;
     }
     if (before.sa_flags & SA_SIGINFO)
@@ -75,26 +75,13 @@ void ritz_map_files(void)
         atomic_store(&allowed, true);
 }
 
-/* Enter a map where the handler finds it. @return false if there are too many */
-static bool enter_map(ritz_mapped *mapped)
+/* A map that is not in use; NULL if there are too many. */
+static ritz_mapped *take_map(void)
 {
-    for (int k = 0; k < MOST; k++) {
-        ritz_mapped *none = NULL;
-
-        if (atomic_compare_exchange_strong(&maps[k], &none, mapped))
-            return true;
-    }
-    return false;
-}
-
-static void strike_map(ritz_mapped *mapped)
-{
-    for (int k = 0; k < MOST; k++) {
-        ritz_mapped *expected = mapped;
-
-        if (atomic_compare_exchange_strong(&maps[k], &expected, NULL))
-            return;
-    }
+    for (int k = 0; k < MOST; k++)
+        if (!atomic_exchange(&maps[k].taken, true))
+            return &maps[k];
+    return NULL;
 }
 
 /* Map an open file, if a NUL follows its bytes: the rest of its last page is
@@ -112,34 +99,33 @@ static bool map_file(ritz_mapped *mapped)
     bytes = mmap(NULL, mapped->size, PROT_READ, MAP_PRIVATE, mapped->file, 0);
     if (bytes == MAP_FAILED)
         return false;
-    mapped->bytes = bytes;
-    return enter_map(mapped);
+    atomic_store(&mapped->torn, false);
+    atomic_store(&mapped->bytes, bytes);
+    return true;
 }
 
-ritz_status ritz_mapped_new(const char *path, ritz_mapped **out)
+ritz_mapped *ritz_mapped_new(const char *path)
 {
     struct stat there = {0};
     ritz_mapped *mapped = NULL;
 
-    *out = NULL;
     /* not even opened: who writes to a pipe must not lose its reader */
     if (!atomic_load(&allowed) || stat(path, &there) != 0 ||
         !S_ISREG(there.st_mode) || there.st_size < SMALLEST)
-        return RITZ_OK;
-    RITZ_CHECK_NEW(mapped, 1);
+        return NULL;
+    mapped = take_map();
+    if (!mapped)
+        return NULL;
     mapped->file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-    if (mapped->file >= 0 && map_file(mapped)) {
-        *out = mapped;
-        return RITZ_OK;
-    }
-    ritz_mapped_free(&mapped);
-    return RITZ_OK;
+    if (mapped->file < 0 || !map_file(mapped))
+        ritz_mapped_free(&mapped);
+    return mapped;
 }
 
 const char *ritz_mapped_bytes(const ritz_mapped *mapped, int64_t *size)
 {
     *size = (int64_t)mapped->size;
-    return mapped->bytes;
+    return atomic_load(&mapped->bytes);
 }
 
 bool ritz_mapped_changed(const ritz_mapped *mapped)
@@ -156,15 +142,15 @@ bool ritz_mapped_changed(const ritz_mapped *mapped)
 void ritz_mapped_free(ritz_mapped **mapped)
 {
     ritz_mapped *old = *mapped;
+    char *bytes = NULL;
 
     if (!old)
         return;
-    if (old->bytes) {
-        strike_map(old);
-        munmap(old->bytes, old->size);
-    }
+    bytes = atomic_exchange(&old->bytes, NULL);
+    if (bytes)
+        munmap(bytes, old->size);
     if (old->file >= 0)
         close(old->file);
-    free(old);
+    atomic_store(&old->taken, false);
     *mapped = NULL;
 }

@@ -22,11 +22,10 @@ typedef struct ritz_mapped ritz_mapped;
 /**
  * Map a regular file of 4 MiB or more.
  *
- * @param[out] out  freed by ritz_mapped_free(); NULL if the file is to be copied
- *                  instead: it is small, or no NUL would follow its bytes
- * @return RITZ_ERR_MEMORY
+ * @return freed by ritz_mapped_free(); NULL if the file is to be copied instead:
+ *         it is small, no NUL would follow its bytes, or eight are mapped
  */
-ritz_status ritz_mapped_new(const char *path, ritz_mapped **out);
+ritz_mapped *ritz_mapped_new(const char *path);
 
 /** Its bytes, which a NUL follows as long as the file is not changed. */
 const char *ritz_mapped_bytes(const ritz_mapped *mapped, int64_t *size);
