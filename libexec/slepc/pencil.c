@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/search.h"
 #include "base/tolerances.h"
+#include "linear/general.h"
 #include "ranks.h"
 
 #include <inttypes.h>
@@ -11,20 +12,8 @@
 
 /* --- survey --------------------------------------------------------------- */
 
-/* Refuse a mass M_jj < 0 of the rank's rows, of which the first is `first`, unless
-   it may be rounding of the largest. */
-static ritz_status refuse_negative(PetscInt own, const double *m,
-                                   PetscInt first, double largest)
-{
-    for (PetscInt j = 0; j < own; j++)
-        RITZ_REFUSE_IF(m[j] < -RITZ_RIGID_DIGITS * largest, RITZ_ERR_SINGULAR,
-                       "mass is not positive definite: entry (%" PRId64
-                       ", %" PRId64 ") is %g",
-                       (int64_t)first + j, (int64_t)first + j, m[j]);
-    return RITZ_OK;
-}
-
-/* K_jj / M_jj of the rows of this rank where both are positive. */
+/* K_jj / M_jj of the rows of this rank where both are positive. A mass may be
+   negative by rounding of the largest, no more. */
 static ritz_status find_ratios(Mat K, Mat M, double **ratio, int *count)
 {
     const PetscScalar *k = NULL;
@@ -49,7 +38,9 @@ static ritz_status find_ratios(Mat K, Mat M, double **ratio, int *count)
     for (PetscInt j = 0; *ratio && j < own; j++)
         if (k[j] > 0.0 && m[j] > 0.0)
             (*ratio)[(*count)++] = k[j] / m[j];
-    status = *ratio ? refuse_negative(own, m, first, largest) : RITZ_ERR_MEMORY;
+    status = *ratio ? ritz_eigen_check_mass(own, m, first,
+                                            -RITZ_RIGID_DIGITS * largest)
+                    : RITZ_ERR_MEMORY;
     ranks_expect(VecRestoreArrayRead(K_d, &k));
     ranks_expect(VecRestoreArrayRead(M_d, &m));
     ranks_expect(VecDestroy(&K_d));

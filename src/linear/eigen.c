@@ -160,6 +160,17 @@ static ritz_status scale_pencil(const ritz_dense *A, const double *s,
     return RITZ_OK;
 }
 
+ritz_status ritz_eigen_check_mass(int64_t count, const double *m, int64_t first,
+                                  double least)
+{
+    for (int64_t j = 0; j < count; j++)
+        RITZ_REFUSE_IF(m[j] < least, RITZ_ERR_SINGULAR,
+                       "mass is not positive definite: entry (%" PRId64
+                       ", %" PRId64 ") is %g",
+                       first + j, first + j, m[j]);
+    return RITZ_OK;
+}
+
 /* s = M_jj^-1/2; where there is no mass, K_jj^-1/2 does as well. */
 static ritz_status choose_scale(const ritz_dense *K, const ritz_dense *M,
                                 double *s)
@@ -168,10 +179,7 @@ static ritz_status choose_scale(const ritz_dense *K, const ritz_dense *M,
         double m = ritz_dense_col(M, j)[j];
         double k = ritz_dense_col(K, j)[j];
 
-        RITZ_REFUSE_IF(m < 0.0, RITZ_ERR_SINGULAR,
-                       "mass is not positive definite: entry (%" PRId64
-                       ", %" PRId64 ") is %g",
-                       j, j, m);
+        RITZ_CHECK(ritz_eigen_check_mass(1, &m, j, 0.0));
         s[j] = m > 0.0 ? 1.0 / sqrt(m) : 1.0 / sqrt(k > 0.0 ? k : 1.0);
     }
     return RITZ_OK;

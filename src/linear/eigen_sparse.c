@@ -54,10 +54,12 @@ enum {
 static ritz_status survey_pencil(ritz_mode_search *s)
 {
     const ritz_sparse *K = s->S.K, *M = s->S.M;
-    RITZ_OWN_ARRAY double *ratio = NULL;
+    RITZ_OWN_ARRAY double *ratio = NULL, *mass = NULL;
+    double largest = 0.0;
     int64_t count = 0;
 
     RITZ_CHECK_NEW(ratio, K->nrow);
+    RITZ_CHECK_NEW(mass, K->nrow);
     RITZ_CHECK_NEW(s->heavy, K->nrow);
     for (int64_t j = 0; j < K->nrow; j++) {
         double k = ritz_sparse_diagonal(K, j);
@@ -70,7 +72,12 @@ static ritz_status survey_pencil(ritz_mode_search *s)
             s->heavy[s->num_heavy++] = j;
         if (k > 0.0 && m > 0.0)
             ratio[count++] = k / m;
+        mass[j] = m;
+        largest = fmax(largest, m);
     }
+    /* rounding of the largest may be negative */
+    RITZ_CHECK(
+        ritz_eigen_check_mass(K->nrow, mass, 0, -RITZ_RIGID_DIGITS * largest));
     qsort(ratio, (size_t)count, sizeof *ratio, ritz_ascending);
     s->typical = count > 0 ? ratio[count / 2] : 1.0;
     return RITZ_OK;

@@ -108,6 +108,11 @@ ritz_status ritz_eigen_quotients(const ritz_dense *A, const ritz_dense *Q,
                                  double *theta);
 
 /* Lanczos on the pencil K - sigma M, for ritz_eigen_sparse. */
+/** Refuse a mass M_jj below @p least <= 0; m[0] is that of row @p first.
+ * @return RITZ_ERR_SINGULAR */
+ritz_status ritz_eigen_check_mass(int64_t count, const double *m, int64_t first,
+                                  double least);
+
 typedef struct ritz_shifted {
     const ritz_sparse *K, *M; /* borrowed */
     double sigma;

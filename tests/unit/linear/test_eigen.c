@@ -623,6 +623,24 @@ static void masses_without_stiffness_are_refused(void **state)
     release(&p);
 }
 
+/* A negative mass, small beside 700 others and far above their rounding. */
+static void a_small_negative_mass_is_refused(void **state)
+{
+    loop l = {0};
+    pencil p = {0};
+    ritz_pairs P = {0};
+
+    (void)state;
+    add_bar(&l, 700, 0, 0);
+    add(&l, 701, 701, 1.0, -1e-4);
+    p = finish(&l, 702);
+    assert_fails(ritz_eigen_sparse(&p.K, &p.M, &(ritz_span){.modes = 1}, &P),
+                 RITZ_ERR_SINGULAR,
+                 "mass is not positive definite: entry (701, 701) is -0.0001");
+    assert_null(P.lambda);
+    release(&p);
+}
+
 /* A dof with neither stiffness nor mass beside 700 that have both. */
 static void a_mechanism_without_mass_is_refused(void **state)
 {
@@ -787,6 +805,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(what_is_no_pencil_is_refused),
     cmocka_unit_test(a_free_chain_of_soft_and_stiff_springs_has_one_rigid_mode),
     cmocka_unit_test(masses_without_stiffness_are_refused),
+    cmocka_unit_test(a_small_negative_mass_is_refused),
     cmocka_unit_test(a_mechanism_without_mass_is_refused),
     cmocka_unit_test(the_factor_is_lent_while_it_is_there),
     cmocka_unit_test(a_factor_that_is_gone_is_reported),
