@@ -1,6 +1,7 @@
 /* Candidates whose bases are columns of a basis with more modes. */
 #include "testing.h"
 
+#include "fit_scenes.h"
 #include "frame.h"
 #include "masses.h"
 #include "project.h"
@@ -40,17 +41,10 @@ static void open_truss(bool damped, ritz_component *truss)
 
 static ritz_fit_request ask(const ritz_method *const *methods, int64_t count)
 {
-    ritz_fit_request request = RITZ_FIT_NONE;
+    ritz_fit_request request = fit_scenes_truss("frequency=1e-3,mac=0.99");
 
-    request.tolerance.band_hz[1] = 40.0;
-    request.tolerance.damping =
-        (ritz_damping){.kind = RITZ_DAMPING_MODAL, .zeta = 0.01};
-    request.num_random = 10;
-    request.costs = request.estimates = false;
     request.methods = methods;
     request.num_methods = count;
-    assert_ok(
-        ritz_tolerance_take("frequency=1e-3,mac=0.99", &request.tolerance));
     return request;
 }
 

@@ -1,6 +1,7 @@
 /* The order of columns, held to the greedy search that measures every model. */
 #include "testing.h"
 
+#include "fit_scenes.h"
 #include "frame.h"
 #include "project.h"
 #include "scenes.h"
@@ -33,14 +34,8 @@ static void ordered_truss_free(ordered_truss *o)
 static void open_truss(const char *tolerance, int64_t method, ordered_truss *o)
 {
     const int64_t in = 69, out = 71;
-    ritz_fit_request request = RITZ_FIT_NONE;
+    const ritz_fit_request request = fit_scenes_truss(tolerance);
 
-    request.tolerance.band_hz[1] = 40.0;
-    request.tolerance.damping =
-        (ritz_damping){.kind = RITZ_DAMPING_MODAL, .zeta = 0.01};
-    request.num_random = 10;
-    request.costs = request.estimates = false;
-    assert_ok(ritz_tolerance_take(tolerance, &request.tolerance));
     assert_ok(truss_component(&truss_free72, &o->truss));
     assert_ok(frame_io(&o->truss, 1, &in, 1, &out));
     assert_ok(add_port(&o->truss, "left", 1));
