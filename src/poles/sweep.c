@@ -19,8 +19,8 @@
 #include <string.h>
 
 enum {
-    BLOCK = 64,     /* frequencies */
-    PARTS = 2 * 64, /* real and imaginary ones of a block */
+    BLOCK = 64,        /* frequencies */
+    PARTS = 2 * BLOCK, /* real and imaginary ones of a block */
 };
 
 typedef struct block {
