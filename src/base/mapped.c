@@ -16,11 +16,11 @@ enum {
 };
 
 struct ritz_mapped {
-    atomic_bool taken;
-    int file;
     struct stat about;     /* when it was mapped */
     _Atomic(char *) bytes; /* NULL: nothing is mapped */
     size_t size;
+    int file;
+    atomic_bool taken;
     atomic_bool torn; /* a part was gone when it was read */
 };
 
