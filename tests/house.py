@@ -220,8 +220,21 @@ def types_have_one_meaning(files, code, graph):
             yield f"{', '.join(sorted(paths))}: the type {name} is defined twice"
 
 
+# Functions that a program finds with one BLAS only.
+ONE_BLAS = re.compile(r'\b(?:openblas|mkl|bli)_\w+')
+BLAS_HOME = 'src/linear/blas_threads.c'
+
+
+def any_blas_will_do(files, code, graph):
+    for path, text in code.items():
+        for name in sorted(set(ONE_BLAS.findall(text))):
+            if path != BLAS_HOME:
+                yield (f'{path}: calls {name}, which other BLAS libraries do '
+                       f'not have: only {BLAS_HOME} may')
+
+
 RULES = [rooms_are_ordered, files_form_no_circle, tables_hold_a_table,
-         tolerances_are_at_home, types_have_one_meaning]
+         tolerances_are_at_home, types_have_one_meaning, any_blas_will_do]
 
 
 def main(root):

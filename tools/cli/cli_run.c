@@ -7,8 +7,7 @@
 #include "base/crowd.h"
 #include "base/draft.h"
 #include "base/text.h"
-
-#include <cblas.h>
+#include "linear/blas_threads.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -110,7 +109,7 @@ static void limit_threads(cli_run *run, const struct stat *file)
 {
     run->piped = run->piped || !S_ISREG(file->st_mode);
     run->bytes += S_ISREG(file->st_mode) ? file->st_size : 0;
-    openblas_set_num_threads(run->bytes < LARGE ? 1 : allowed_threads());
+    ritz_blas_threads(run->bytes < LARGE ? 1 : allowed_threads());
     ritz_set_threads(allowed_threads());
     execute_again(run, run->bytes, run->piped);
 }
