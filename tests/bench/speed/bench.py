@@ -75,8 +75,8 @@ def measure(shop):
     finally:
         shutil.rmtree(shop.disk, ignore_errors=True)
     result["parts"] = [{
-        "models": shop.models, "quick": shop.quick, "repeats": shop.repeats,
-        "seconds": shop.elapsed(), "others": others.part(),
+        "models": shop.models, "quick": shop.quick,
+        "repeats": max(shop.repeats, 1), "seconds": shop.elapsed(), "others": others.part(),
         "date": result["machine"].pop("date"),
         "commit": result["machine"].pop("commit")}]
     return result
@@ -116,7 +116,8 @@ def main():
                         help="of " + ", ".join(models.SHAPES)
                         + " [" + ",".join(USUAL) + "]")
     parser.add_argument("--repeats", type=int, metavar="N",
-                        help="rounds after the first, 5; 3 of --quick")
+                        help="rounds after the first, 5; 3 of --quick; 0: "
+                        "the first one counts")
     parser.add_argument("--only", type=words, metavar="NAME[,NAME]",
                         help="these rows of tests/bench/speed/jobs.toml and "
                         "functions of figures.py [all]")

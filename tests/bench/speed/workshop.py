@@ -63,8 +63,10 @@ class Workshop:
         self.build = ROOT / "build" / "bench"
         self.disk = self.build / "models"
         self.quick, self.only = arguments.quick, arguments.only
-        self.repeats = arguments.repeats or (3 if self.quick else 5)
-        self.repeats_of_figures = 1 if self.quick else self.repeats
+        self.repeats = arguments.repeats
+        if self.repeats is None:
+            self.repeats = 3 if self.quick else 5
+        self.repeats_of_figures = 1 if self.quick else max(self.repeats, 1)
         self.starts = 10 if self.quick else 50
         self.limit = arguments.limit
         self.models = arguments.models or (QUICK if self.quick else USUAL)
