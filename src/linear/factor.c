@@ -376,6 +376,7 @@ ritz_status ritz_factor_signed(const ritz_sparse *A, const int64_t *order,
     RITZ_CHECK(begin_factor(A, F, &a));
     RITZ_CHECK_NEW(sign, F->n);
     RITZ_CHECK(analyse_sparse(&C, A, order));
+    ritz_monitor_step("factor", 0, 0);
     RITZ_CHECK(ritz_signed_cholesky(A, C.L, &C.common, sign));
     RITZ_CHECK(copy_order(C.L, F));
     RITZ_CHECK(ritz_supernodal_new(C.L, sign, &F->S));
