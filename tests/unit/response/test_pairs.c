@@ -15,12 +15,13 @@
 #include <float.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 static bool find(const char *name, char path[static 512])
 {
     const char *data = getenv("RITZ_EXTERNAL_DATA");
 
-    if (!data) {
+    if (!data || access(data, R_OK) != 0) {
         print_message("skipped: no external data\n");
         return false;
     }
