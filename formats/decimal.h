@@ -48,6 +48,23 @@ typedef struct ritz_decimal {
  */
 bool ritz_decimal_scan(const char **at, const char *end, ritz_decimal *out);
 
+/**
+ * The number in a field of @p width letters as Fortran's 1P,Ew.d fills it:
+ * blanks, a sign or another blank, a digit, the point, @p decimals digits, E or
+ * D, and an exponent of a sign and two digits. ritz_decimal_scan() finds the
+ * same number there, in three times the time.
+ *
+ * @param[in] decimals  1 to 18, and at most @p width - 7
+ * @return false if the field is spelled otherwise, or rounding needs strtod;
+ *         *out is unchanged
+ */
+bool ritz_decimal_scan_field(const char *at, int64_t width, int64_t decimals,
+                             double *out);
+
+/** The whole number without a sign at the end of eight letters, behind blanks.
+ * @return false if they are spelled otherwise; *out is unchanged */
+bool ritz_decimal_scan_eight(const char *at, int64_t *out);
+
 /** Scan a whole number of at most 18 digits, as above. */
 bool ritz_decimal_scan_whole(const char **at, const char *end, int64_t *out);
 

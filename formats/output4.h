@@ -69,7 +69,7 @@ struct ritz_output4_reader {
     int64_t wide;    /* words of a real, as the header has them */
     int64_t widths;  /* 2: they may as well be the other of 1 and 2 */
     /* text: nEw.d */
-    int64_t per_line, width;
+    int64_t per_line, width, decimals;
     /* binary */
     bool big_endian;
     int64_t mark;    /* bytes of a record's length */
