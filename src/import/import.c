@@ -44,7 +44,7 @@ static void find_zero(int thread, int64_t from, int64_t to, void *task)
     bool found = false;
 
     for (int64_t p = from; p < to; p++)
-        found = found || search->val[p] == 0.0;
+        found |= search->val[p] == 0.0;
     search->found[thread] = found;
 }
 

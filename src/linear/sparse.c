@@ -6,6 +6,7 @@
 
 #include <ritz/matrix.h>
 
+#include <float.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdbool.h>
@@ -341,6 +342,57 @@ static ritz_status check_column(const ritz_sparse *A, int64_t j)
     return RITZ_OK;
 }
 
+/* Whether columns are as ritz_sparse_check() wants them: each thread looks at
+   some of them. */
+typedef struct column_check {
+    const ritz_sparse *A;
+    bool refused[RITZ_TEAM_SHARES]; /* by each thread */
+} column_check;
+
+static void look_at_columns(int thread, int64_t from, int64_t to, void *task)
+{
+    column_check *all = task;
+    const ritz_sparse *A = all->A;
+    bool refused = false;
+
+    for (int64_t j = from; j < to; j++) {
+        int64_t above = -1;
+
+        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
+            const bool ascends = A->rowind[p] > above;
+            const bool finite = fabs(A->val[p]) <= DBL_MAX;
+
+            refused |= !ascends | !finite;
+            above = A->rowind[p];
+        }
+        refused |= above >= A->nrow; /* the last row is the largest */
+    }
+    all->refused[thread] = refused;
+}
+
+/* Threads that gain from a pass over the entries; at most RITZ_TEAM_SHARES. */
+static int sweep_threads(const ritz_sparse *A)
+{
+    enum { ENTRIES = 1 << 18 }; /* a fraction of a millisecond */
+    const int64_t gain = A->colptr[A->ncol] / ENTRIES;
+
+    return ritz_team_ready(gain < RITZ_TEAM_SHARES ? gain : RITZ_TEAM_SHARES);
+}
+
+/* Where a column is refused, one thread finds the first that is. */
+static ritz_status check_columns(const ritz_sparse *A)
+{
+    column_check all = {.A = A};
+    bool refused = false;
+
+    ritz_team_over(sweep_threads(A), A->ncol, look_at_columns, &all);
+    for (int k = 0; k < RITZ_TEAM_SHARES; k++)
+        refused = refused || all.refused[k];
+    for (int64_t j = 0; refused && j < A->ncol; j++)
+        RITZ_CHECK(check_column(A, j));
+    return RITZ_OK;
+}
+
 ritz_status ritz_sparse_check(const ritz_sparse *A, int64_t nnz)
 {
     RITZ_REFUSE_IF(A->colptr[0] != 0 || A->colptr[A->ncol] != nnz,
@@ -348,9 +400,7 @@ ritz_status ritz_sparse_check(const ritz_sparse *A, int64_t nnz)
     for (int64_t j = 0; j < A->ncol; j++)
         RITZ_REFUSE_IF(A->colptr[j] > A->colptr[j + 1], RITZ_ERR_FORMAT,
                        "column pointers descend at column %" PRId64, j);
-    for (int64_t j = 0; j < A->ncol; j++)
-        RITZ_CHECK(check_column(A, j));
-    return RITZ_OK;
+    return check_columns(A);
 }
 
 /* A(i,j), 0 where nothing is stored. */
@@ -439,27 +489,49 @@ static double pass_unpaired(const ritz_sparse *A, int64_t i, int64_t row,
     return gap;
 }
 
+/* The first entry of column j below the diagonal and not above row `from`. If j
+   is a row of this thread, next[j] is not above the diagonal by now. */
+static int64_t first_to_sweep(const ritz_sparse *A, int64_t j, int64_t from,
+                              const int64_t *next)
+{
+    const int64_t begin = A->colptr[j], end = A->colptr[j + 1];
+
+    if (j >= from)
+        return next[j] + (next[j] < end && A->rowind[next[j]] == j);
+    if (begin == end || A->rowind[end - 1] < from)
+        return end;
+    return begin + ritz_lower_bound(end - begin, A->rowind + begin, from);
+}
+
 /*
  * The sweep takes the entries A(i,j), i > j, by ascending j. Their counterparts
  * A(j,i) stand in column i by ascending row j: so next[i], the next entry of
- * column i to be compared, only moves forward.
+ * column i to be compared, only moves forward. In a symmetric matrix it is the
+ * counterpart. More columns are gone through side by side than the processor
+ * fetches ahead by itself.
  */
 static double sweep_column(const ritz_sparse *A, int64_t j, int64_t from,
                            int64_t to, int64_t *next)
 {
-    const int64_t begin = A->colptr[j];
-    const int64_t after = j < from ? from - 1 : j; /* rows behind this one */
+    enum { AHEAD = 8 }; /* entries of a line of the cache */
     double gap = 0.0;
 
-    for (int64_t p = begin + ritz_lower_bound(A->colptr[j + 1] - begin,
-                                              A->rowind + begin, after + 1);
+    for (int64_t p = first_to_sweep(A, j, from, next);
          p < A->colptr[j + 1] && A->rowind[p] < to; p++) {
-        int64_t i = A->rowind[p];
+        const int64_t i = A->rowind[p];
+        int64_t q = next[i];
         double other = 0.0;
 
-        gap = ritz_larger(gap, pass_unpaired(A, i, j, next));
-        if (next[i] < A->colptr[i + 1] && A->rowind[next[i]] == j)
-            other = A->val[next[i]++];
+        if (q < A->colptr[i + 1] && A->rowind[q] < j) {
+            gap = ritz_larger(gap, pass_unpaired(A, i, j, next));
+            q = next[i];
+        }
+        if (q < A->colptr[i + 1] && A->rowind[q] == j) {
+            other = A->val[q];
+            next[i] = q + 1;
+            __builtin_prefetch(&A->rowind[q + AHEAD]);
+            __builtin_prefetch(&A->val[q + AHEAD]);
+        }
         gap = ritz_larger(gap, fabs(A->val[p] - other));
     }
     return gap;
@@ -484,15 +556,6 @@ static void sweep_rows(int thread, int64_t from, int64_t to, void *task)
         gap = ritz_larger(gap, sweep_column(A, j, from, to, all->next));
     }
     all->gap[thread] = gap;
-}
-
-/* Threads that gain from a pass over the entries; at most RITZ_TEAM_SHARES. */
-static int sweep_threads(const ritz_sparse *A)
-{
-    enum { ENTRIES = 1 << 18 }; /* a fraction of a millisecond */
-    const int64_t gain = A->colptr[A->ncol] / ENTRIES;
-
-    return ritz_team_ready(gain < RITZ_TEAM_SHARES ? gain : RITZ_TEAM_SHARES);
 }
 
 double ritz_sparse_sweep_asymmetry(const ritz_sparse *A, int64_t *next)
