@@ -307,7 +307,7 @@ static ritz_status solve_scaled(const ritz_dense *K, const ritz_dense *M,
     RITZ_CHECK(scale_pencil(K, s, &K_s));
     RITZ_CHECK(scale_pencil(M, s, &M_s));
     RITZ_CHECK(ritz_dense_copy(&M_s, &C));
-    RITZ_CHECK(ritz_general_cholesky(&C, &rcond));
+    RITZ_CHECK(ritz_general_cholesky_above(&C, RITZ_WELL_CONDITIONED, &rcond));
     if (rcond > RITZ_WELL_CONDITIONED) {
         RITZ_CHECK(by_cholesky(&C, &K_s, lambda));
         RITZ_MOVE(*X, K_s);

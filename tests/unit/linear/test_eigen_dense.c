@@ -1,5 +1,6 @@
 #include "testing.h"
 
+#include "base/tolerances.h"
 #include "linear/general.h"
 
 #include <ritz/matrix.h>
@@ -213,7 +214,42 @@ static void eigenvalues_alone_equal_those_with_vectors(void **state)
     A.nrow = N;
 }
 
+/* Gram matrices of columns that depend on each other more and more. The bound is
+   never above LAPACK's estimate, and where it is not enough, it is the estimate
+   that is returned. */
+static void conditions_are_bounded_from_below(void **state)
+{
+    enum { N = 20, LAST = 30 };
+    const double enough = RITZ_WELL_CONDITIONED;
+    uint64_t seed = 11;
+    int64_t cheap = 0, estimated = 0;
+
+    (void)state;
+    for (int t = 0; t < LAST; t++) {
+        RITZ_OWN(ritz_dense) X = {0}, G = {0}, H = {0};
+        double rcond = 0.0, bound = 0.0;
+
+        assert_ok(ritz_dense_new(N, N, &X));
+        for (int64_t k = 0; k < N * N; k++)
+            X.val[k] = pow(2.0, -t) * ritz_general_noise(&seed) +
+                       (double)(k % N) + (k % (N + 1) == 0) * pow(2.0, 4.0 - t);
+        assert_ok(ritz_dense_mul_tn(&X, &X, &G));
+        for (int64_t j = 0; j < N; j++)
+            ritz_dense_col(&G, j)[j] *= 1.0 + 64.0 * N * DBL_EPSILON;
+        assert_ok(ritz_dense_copy(&G, &H));
+        assert_ok(ritz_general_cholesky(&G, &rcond));
+        assert_ok(ritz_general_cholesky_above(&H, enough, &bound));
+        assert_memory_equal(G.val, H.val, N * N * sizeof *G.val);
+        assert_true((bound > enough) == (rcond > enough));
+        assert_true(bound <= rcond * (1.0 + 64.0 * N * DBL_EPSILON));
+        cheap += bound != rcond;
+        estimated += bound == rcond;
+    }
+    assert_true(cheap > 0 && estimated > 0);
+}
+
 static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(conditions_are_bounded_from_below),
     cmocka_unit_test(modal_coordinates_are_taken_as_they_are),
     cmocka_unit_test(nearly_modal_coordinates_are_solved_as_any_other),
     cmocka_unit_test(residuals_are_computed_of_the_modes_that_are_kept),
