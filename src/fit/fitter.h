@@ -56,6 +56,7 @@ typedef struct ritz_fit_ordered {
     int64_t *modes;  /* num_bodies */
     int64_t count;   /* columns of all bodies */
     int64_t fixed;   /* the first of them, which must stay */
+    int64_t step;    /* columns between two cuts that are measured */
     int64_t *column; /* count */
 } ritz_fit_ordered;
 

@@ -27,28 +27,34 @@ static int64_t divide_work(int64_t count, int64_t most)
     return count > most && most > 0 ? (count + most - 1) / most : 1;
 }
 
+/* Room for the columns of `whole`, numbered through all bodies. */
+static ritz_status begin_nesting(ritz_fitter *f, ritz_nesting *n)
+{
+    n->f = f;
+    n->every = n->step = 1;
+    RITZ_CHECK_NEW(n->first, f->num_bodies + 1);
+    for (int64_t k = 0; k < f->num_bodies; k++)
+        n->first[k + 1] = n->count += n->whole.item[k].K.ncol;
+    RITZ_CHECK_NEW(n->column, n->count);
+    RITZ_CHECK_NEW(n->own, n->count);
+    RITZ_CHECK_NEW(n->some, n->count);
+    return f->scene ? RITZ_OK
+                    : ritz_reference_parts(f->place[0].reference,
+                                           &n->whole.item[0].T, &n->parts);
+}
+
 /*
  * Columns as they were made, but those that must stay first. Where columns or
  * places are many, some of them speak for all: of c columns that may go, c
  * models alone and some 2 c cuts are measured at places.
  */
-static ritz_status begin_nesting(ritz_fitter *f, ritz_nesting *n)
+static ritz_status begin_order(ritz_fitter *f, ritz_nesting *n)
 {
     RITZ_OWN_ARRAY ritz_column_kind *kind = NULL;
     const int64_t most = f->request.most_measured;
 
-    n->f = f;
-    RITZ_CHECK_NEW(n->first, f->num_bodies + 1);
-    for (int64_t k = 0; k < f->num_bodies; k++)
-        n->first[k + 1] = n->count += n->whole.item[k].K.ncol;
-    RITZ_CHECK_NEW(n->column, n->count);
     RITZ_CHECK_NEW(n->alone, n->count);
-    RITZ_CHECK_NEW(n->own, n->count);
-    RITZ_CHECK_NEW(n->some, n->count);
     RITZ_CHECK_NEW(kind, n->count);
-    if (!f->scene)
-        RITZ_CHECK(ritz_reference_parts(f->place[0].reference,
-                                        &n->whole.item[0].T, &n->parts));
     for (int64_t k = 0; k < f->num_bodies; k++)
         RITZ_CHECK(ritz_fit_kinds(&n->whole.item[k], kind + n->first[k]));
     for (int64_t k = 0; k < n->count; k++)
@@ -316,13 +322,16 @@ ritz_status ritz_nesting_order(ritz_fitter *f, const ritz_fit_candidate *of,
     RITZ_CHECK(begin_nesting(f, n));
     known = ritz_fit_ordered_find(f, of, n->count);
     if (!known) {
+        RITZ_CHECK(begin_order(f, n));
         RITZ_CHECK(find_order(f, n));
         return ritz_fit_ordered_keep(f, of,
                                      &(ritz_fit_ordered){.count = n->count,
                                                          .fixed = n->fixed,
+                                                         .step = n->step,
                                                          .column = n->column});
     }
     n->fixed = known->fixed;
+    n->step = known->step;
     memcpy(n->column, known->column, (size_t)n->count * sizeof *n->column);
     return RITZ_OK;
 }

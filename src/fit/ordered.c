@@ -26,7 +26,10 @@ ritz_status ritz_fit_ordered_keep(ritz_fitter *f, const ritz_fit_candidate *of,
                                   const ritz_fit_ordered *found)
 {
     RITZ_OWN(ritz_fit_ordered)
-    kept = {.method = of->method, .count = found->count, .fixed = found->fixed};
+    kept = {.method = of->method,
+            .count = found->count,
+            .fixed = found->fixed,
+            .step = found->step};
 
     RITZ_CHECK_COPY(kept.modes, of->modes, f->num_bodies);
     RITZ_CHECK_COPY(kept.column, found->column, found->count);
