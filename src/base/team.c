@@ -1,10 +1,12 @@
 #include "base/team.h"
 
 #include "base/crowd.h"
+#include "base/text.h"
 
 #include <pthread.h>
 #include <signal.h>
 #include <stdatomic.h>
+#include <stdio.h>
 #include <time.h>
 
 /* Null where no library that is linked uses OpenMP. */
@@ -317,6 +319,53 @@ void ritz_team_each(int threads, int64_t count, ritz_team_item *work,
 {
     ritz_team_run(threads, work_on_items,
                   &(item_queue){.count = count, .work = work, .task = task});
+}
+
+/* Items that can fail, and the first one that did. */
+typedef struct fallible_items {
+    ritz_team_step *work;
+    void *task;
+    pthread_mutex_t lock;  /* of the fields below */
+    _Atomic int64_t first; /* its number; INT64_MAX: none has failed */
+    ritz_status status;
+    char why[RITZ_MESSAGE_SIZE];
+} fallible_items;
+
+/* Items are taken in ascending order, so that none before the first failure is
+   left out. */
+static void try_item(int64_t k, void *task)
+{
+    fallible_items *items = task;
+    ritz_status status = RITZ_OK;
+
+    if (k > atomic_load(&items->first))
+        return;
+    status = items->work(k, items->task);
+    if (status == RITZ_OK)
+        return;
+    pthread_mutex_lock(&items->lock);
+    if (k < atomic_load(&items->first)) {
+        atomic_store(&items->first, k);
+        items->status = status;
+        (void)snprintf(items->why, sizeof items->why, "%s",
+                       ritz_error_message());
+    }
+    pthread_mutex_unlock(&items->lock);
+}
+
+ritz_status ritz_team_try(int threads, int64_t count, ritz_team_step *work,
+                          void *task)
+{
+    fallible_items items = {.work = work,
+                            .task = task,
+                            .lock = PTHREAD_MUTEX_INITIALIZER,
+                            .first = INT64_MAX};
+
+    ritz_team_each(threads, count, try_item, &items);
+    /* a sentence belongs to the thread that recorded it */
+    if (items.status != RITZ_OK)
+        ritz_record("%s", items.why);
+    return items.status;
 }
 
 int64_t ritz_team_shares(int threads)

@@ -29,6 +29,9 @@ typedef void ritz_team_range(int thread, int64_t from, int64_t to, void *task);
 /** What is done with item @p k. */
 typedef void ritz_team_item(int64_t k, void *task);
 
+/** What is done with item @p k, if it can fail. */
+typedef ritz_status ritz_team_step(int64_t k, void *task);
+
 /**
  * Run @p work once in each of @p threads threads, and return when all have
  * ended. The caller is thread 0. If several threads of a program call this
@@ -58,6 +61,16 @@ void ritz_team_over(int threads, int64_t count, ritz_team_range *work,
  */
 void ritz_team_each(int threads, int64_t count, ritz_team_item *work,
                     void *task);
+
+/**
+ * ritz_team_each() for items that can fail. All items before the first one that
+ * fails are worked on; of those behind it, some.
+ *
+ * @return the status of the first item, by number, that fails, with its
+ *         sentence, whichever thread worked on it
+ */
+ritz_status ritz_team_try(int threads, int64_t count, ritz_team_step *work,
+                          void *task);
 
 /** Called by each of the @p threads threads of a task: wait for the others. */
 void ritz_team_meet(int threads);

@@ -7,6 +7,10 @@
 
 #include <ritz/base.h>
 
+/* Bytes of the longest sentence of a failure: the cause stands behind the path
+   that it concerns, however long that is. */
+enum { RITZ_MESSAGE_SIZE = 4096 + 512 };
+
 /**
  * Bytes of the letter of UTF-8 at @p text, which NUL ends.
  *

@@ -239,6 +239,46 @@ static void a_thread_outside_the_team_blocks_signals(void **state)
     assert_int_equal(sigismember(&after, SIGINT), sigismember(&before, SIGINT));
 }
 
+typedef struct failing_items {
+    _Atomic int done;   /* of the five items before the first failure */
+    _Atomic bool later; /* item 9 has begun */
+} failing_items;
+
+enum { PATIENCE = 1000000 }; /* looks; a single thread waits in vain */
+
+/* Items 5 and 9 of 20 fail. Item 5 ends after item 9 where it can. */
+static ritz_status fail_twice(int64_t k, void *task)
+{
+    failing_items *f = task;
+
+    atomic_fetch_add(&f->done, k < 5);
+    if (k == 9)
+        atomic_store(&f->later, true);
+    for (int i = 0; k == 5 && i < PATIENCE && !atomic_load(&f->later); i++)
+        continue;
+    return k == 5 || k == 9
+               ? ritz_fail(RITZ_ERR_SINGULAR, "item %d fails", (int)k)
+               : RITZ_OK;
+}
+
+static void the_first_failure_is_reported_by_its_number(void **state)
+{
+    (void)state;
+    for (int limit = 1; limit <= MOST; limit++) {
+        failing_items all = {0}, five = {0};
+
+        ritz_set_threads(limit);
+        assert_int_equal(
+            ritz_team_try(ritz_team_ready(MOST), 20, fail_twice, &all),
+            RITZ_ERR_SINGULAR);
+        assert_string_equal(ritz_error_message(), "item 5 fails");
+        assert_int_equal(all.done, 5); /* all before it were worked on */
+        assert_ok(ritz_team_try(ritz_team_ready(MOST), 5, fail_twice, &five));
+        assert_int_equal(five.done, 5);
+    }
+    ritz_set_threads(1);
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(all_threads_work_and_meet),
     cmocka_unit_test(a_task_may_use_fewer_threads_than_were_started),
@@ -247,6 +287,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(parts_cover_every_item_once),
     cmocka_unit_test(every_item_is_worked_on_once),
     cmocka_unit_test(within_a_task_one_thread_is_ready),
+    cmocka_unit_test(the_first_failure_is_reported_by_its_number),
     cmocka_unit_test(a_file_has_four_shares_for_each_thread),
     cmocka_unit_test(a_thread_outside_the_team_blocks_signals),
 };
