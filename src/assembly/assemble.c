@@ -12,7 +12,9 @@
 #include "assembly/assembly.h"
 
 #include "base/alloc.h"
+#include "base/team.h"
 #include "base/tolerances.h"
+#include "linear/blas_threads.h"
 #include "linear/general.h"
 
 #include <ritz/base.h>
@@ -178,6 +180,50 @@ ritz_status ritz_stage_assemble(const ritz_stage *stage, const double *setting,
     return RITZ_OK;
 }
 
+/* Coordinates up to which threads work on a system each. Matrices are then
+   smaller than the arrays that are compared with the limit of memory, and the
+   BLAS hardly gains from several threads. */
+enum { SMALL_STAGE = 360 };
+
+int ritz_stage_threads(const ritz_stage *stage, int64_t count)
+{
+    return ritz_team_ready(stage->num_coordinates <= SMALL_STAGE ? count : 1);
+}
+
+int64_t ritz_stage_round(const ritz_stage *stage)
+{
+    const int threads = ritz_stage_threads(stage, RITZ_TEAM_SHARES);
+
+    return threads > 1 ? ritz_team_shares(threads) : 1;
+}
+
+/* Systems at some settings. */
+typedef struct some_systems {
+    const ritz_stage *stage;
+    const double *const *setting;
+    ritz_configuration *out;
+} some_systems;
+
+static ritz_status assemble_item(int64_t k, void *task)
+{
+    const some_systems *s = task;
+
+    return ritz_stage_assemble(s->stage, s->setting[k], &s->out[k]);
+}
+
+ritz_status ritz_stage_assemble_some(const ritz_stage *stage, int64_t count,
+                                     const double *const *setting,
+                                     ritz_configuration *out)
+{
+    const int threads = ritz_stage_threads(stage, count);
+    some_systems some = {stage, setting, out};
+    [[maybe_unused]] RITZ_OWN(ritz_blas_single) single = {0};
+
+    if (threads > 1)
+        single = ritz_blas_single_new();
+    return ritz_team_try(threads, count, assemble_item, &some);
+}
+
 /* A system over all configurations of a scene. */
 
 /* Names, orders, band and damping of the scene. */
@@ -216,29 +262,60 @@ bool ritz_stop_asked(const ritz_stop *stop)
     return stop && stop->asked(stop->context);
 }
 
+/* All configurations until they are stopped. */
+static ritz_status assemble_all(const ritz_stage *stage, const ritz_stop *stop,
+                                ritz_system *system)
+{
+    const ritz_scene *scene = stage->scene;
+    const int64_t all = scene->num_configurations;
+    const int64_t most = ritz_stage_round(stage);
+    RITZ_OWN_ARRAY const double **row = NULL;
+    bool stopped = false;
+
+    RITZ_CHECK_NEW(row, most);
+    RITZ_CHECK_NEW(system->configuration, all);
+    while (system->num_configurations < all && !stopped) {
+        const int64_t first = system->num_configurations;
+        int64_t k = first;
+
+        for (; k < all && k < first + most && !stopped; k += !stopped) {
+            stopped = k > 0 && ritz_stop_asked(stop);
+            if (stopped)
+                continue;
+            ritz_monitor_step("configuration", k, all);
+            row[k - first] = scene->setting + k * scene->num_sweeps;
+        }
+        system->num_configurations = k;
+        RITZ_CHECK(ritz_stage_assemble_some(stage, k - first, row,
+                                            &system->configuration[first]));
+    }
+    return RITZ_OK;
+}
+
+/* One configuration by its name. */
+static ritz_status assemble_one(const ritz_stage *stage, const char *at,
+                                ritz_system *system)
+{
+    const ritz_scene *scene = stage->scene;
+    RITZ_OWN_ARRAY double *setting = NULL;
+
+    RITZ_CHECK_NEW(setting, scene->num_sweeps);
+    RITZ_CHECK_NEW(system->configuration, 1);
+    ritz_monitor_step("configuration", 0, 1);
+    RITZ_CHECK_IN("--at", ritz_scene_settings(scene, at, setting));
+    system->num_configurations = 1;
+    return ritz_stage_assemble(stage, setting, &system->configuration[0]);
+}
+
 /* One configuration by its name, or all until they are stopped. */
 static ritz_status assemble_rows(const ritz_stage *stage, const char *at,
                                  const ritz_stop *stop, ritz_system *out)
 {
-    const ritz_scene *scene = stage->scene;
-    int64_t count = at ? 1 : scene->num_configurations;
     RITZ_OWN(ritz_system) system = {0};
-    RITZ_OWN_ARRAY double *setting = NULL;
 
-    RITZ_CHECK_NEW(setting, scene->num_sweeps);
     RITZ_CHECK(label_system(stage, &system));
-    RITZ_CHECK_NEW(system.configuration, count);
-    for (int64_t k = 0; k < count && !(k > 0 && ritz_stop_asked(stop)); k++) {
-        const double *row = setting;
-
-        ritz_monitor_step("configuration", k, count);
-        if (at)
-            RITZ_CHECK_IN("--at", ritz_scene_settings(scene, at, setting));
-        else
-            row = scene->setting + k * scene->num_sweeps;
-        RITZ_CHECK(ritz_stage_assemble(stage, row, &system.configuration[k]));
-        system.num_configurations++;
-    }
+    RITZ_CHECK(at ? assemble_one(stage, at, &system)
+                  : assemble_all(stage, stop, &system));
     RITZ_MOVE(*out, system);
     return RITZ_OK;
 }

@@ -252,6 +252,28 @@ ritz_status ritz_dual_assemble(const ritz_stage *stage,
                                const ritz_springs *springs, const ritz_dense *C,
                                ritz_dense *P, ritz_configuration *c);
 
+/**
+ * How many configurations of a stage to work on between two looks at whether to
+ * stop: one, or of a small stage some for each thread.
+ */
+int64_t ritz_stage_round(const ritz_stage *stage);
+
+/** Threads that work on @p count configurations of a stage, each on one at a
+ * time: one, unless the stage is small. */
+int ritz_stage_threads(const ritz_stage *stage, int64_t count);
+
+/**
+ * ritz_stage_assemble() at some settings. The threads of the team share small
+ * systems out among them.
+ *
+ * @param[in]  setting  of each
+ * @param[out] out      count; after a failure some are not empty
+ * @return the failure of the first of them that fails
+ */
+ritz_status ritz_stage_assemble_some(const ritz_stage *stage, int64_t count,
+                                     const double *const *setting,
+                                     ritz_configuration *out);
+
 /** All configurations of the scene, as ritz_assemble does, until @p stop ends
  * it; at least one. @param[in] stop  NULL: nothing ends it */
 ritz_status ritz_assemble_until(const ritz_stage *stage, const ritz_stop *stop,

@@ -13,6 +13,7 @@
 
 #include "assembly/assembly.h"
 #include "base/alloc.h"
+#include "base/team.h"
 #include "base/tolerances.h"
 #include "linear/blas_threads.h"
 #include "model/squares.h"
@@ -339,29 +340,81 @@ static void drop_configurations(int64_t count, ritz_system *system)
         system->num_configurations = count;
 }
 
+/* Rows that are worked on in rounds, some at once. */
+typedef struct rounds {
+    const char *step;
+    const ritz_stop *stop;
+    int64_t first, to; /* all rows */
+    int64_t from;      /* first row of the next round */
+    int64_t most;      /* rows of a round */
+    bool stopped;
+} rounds;
+
+/* Show the step of each row of a round, which ends before a row at which a stop
+   is asked for. @return the row behind the round */
+static int64_t begin_round(rounds *r)
+{
+    int64_t k = r->from;
+
+    for (; k < r->to && k < r->from + r->most; k++) {
+        r->stopped = k > 0 && ritz_stop_asked(r->stop);
+        if (r->stopped)
+            break;
+        ritz_monitor_step(r->step, k - r->first, r->to - r->first);
+    }
+    return k;
+}
+
 /* Assemble the stage-1 system half way between listed configurations. If that
    is stopped, rows of those that are not assembled are dropped. */
 static ritz_status assemble_between(const ritz_stop *stop, ritz_rows *rows,
                                     ritz_comparison *c)
 {
-    int64_t listed = rows->listed->num_configurations;
+    const int64_t listed = rows->listed->num_configurations;
+    const int64_t most = ritz_stage_round(rows->stage);
     ritz_system *between = &rows->between;
+    RITZ_OWN_ARRAY const double **setting = NULL;
+    rounds r = {.step = "configuration between",
+                .stop = stop,
+                .first = listed,
+                .to = rows->num_rows,
+                .most = most};
 
+    RITZ_CHECK_NEW(setting, most);
     RITZ_CHECK_NEW(between->configuration, rows->num_rows - listed);
-    for (int64_t k = listed; k < rows->num_rows; k++) {
-        if (ritz_stop_asked(stop)) {
+    for (int64_t k = listed; k < rows->num_rows;) {
+        const int64_t first = k;
+
+        r.from = first;
+        k = begin_round(&r);
+        for (int64_t i = first; i < k; i++)
+            setting[i - first] = rows->row[i].setting;
+        between->num_configurations = k - listed;
+        RITZ_CHECK(
+            ritz_stage_assemble_some(rows->stage, k - first, setting,
+                                     &between->configuration[first - listed]));
+        if (r.stopped) {
             c->interrupted = true;
             drop_rows(k, c);
             rows->num_rows = k;
-            break;
         }
-        ritz_monitor_step("configuration between", k - listed,
-                          rows->num_rows - listed);
-        RITZ_CHECK(ritz_stage_assemble(rows->stage, rows->row[k].setting,
-                                       &between->configuration[k - listed]));
-        between->num_configurations++;
     }
     return RITZ_OK;
+}
+
+/* Modes that are chosen at rows. */
+typedef struct choosing {
+    const ritz_rows *rows;
+    double least;
+} choosing;
+
+static ritz_status choose_item(int64_t k, void *task)
+{
+    const choosing *c = task;
+
+    return ritz_compare_select(c->rows->stage->scene,
+                               ritz_rows_first(c->rows, k), c->least,
+                               &c->rows->row[k]);
 }
 
 /*
@@ -370,14 +423,36 @@ static ritz_status assemble_between(const ritz_stop *stop, ritz_rows *rows,
  */
 static ritz_status choose_modes(const ritz_rows *rows)
 {
-    const ritz_scene *scene = rows->stage->scene;
-    double least = 0.0;
+    choosing c = {rows, 0.0};
 
-    RITZ_CHECK(ritz_compare_threshold(scene, rows->listed, &least));
-    for (int64_t k = 0; k < rows->num_rows; k++)
-        RITZ_CHECK(ritz_compare_select(scene, ritz_rows_first(rows, k), least,
-                                       &rows->row[k]));
-    return RITZ_OK;
+    RITZ_CHECK(ritz_compare_threshold(rows->stage, rows->listed, &c.least));
+    return ritz_team_try(ritz_stage_threads(rows->stage, rows->num_rows),
+                         rows->num_rows, choose_item, &c);
+}
+
+/* Rows of a round that are measured. */
+typedef struct measuring {
+    const ritz_rows *rows;
+    ritz_comparison *c;
+    int64_t from; /* the first of them */
+} measuring;
+
+/* The errors of a row, by one of the threads. */
+static ritz_status measure_item(int64_t k, void *task)
+{
+    const measuring *m = task;
+    const ritz_rows *rows = m->rows;
+    ritz_comparison *c = m->c;
+    const int64_t i = m->from + k;
+    ritz_compare_row *row = &rows->row[i];
+    RITZ_OWN(ritz_configuration) second = {0};
+
+    if (!row->listed)
+        RITZ_CHECK(ritz_stage_assemble(&c->second, row->setting, &second));
+    return ritz_compare_measure(
+        rows->stage, c->V, ritz_rows_first(rows, i),
+        row->listed && rows->response ? &rows->response[i] : NULL,
+        row->listed ? &c->second_system.configuration[i] : &second, row);
 }
 
 /*
@@ -388,25 +463,25 @@ static ritz_status choose_modes(const ritz_rows *rows)
 static ritz_status measure_rows(const ritz_rows *rows, const ritz_stop *stop,
                                 ritz_comparison *c)
 {
-    for (int64_t k = 0; k < rows->num_rows; k++) {
-        ritz_compare_row *row = &rows->row[k];
-        RITZ_OWN(ritz_configuration) second = {0};
+    rounds r = {.step = "errors",
+                .stop = stop,
+                .to = rows->num_rows,
+                .most = ritz_stage_round(rows->stage)};
 
-        if (k > 0 && ritz_stop_asked(stop)) {
-            c->interrupted = true;
-            drop_rows(k, c);
-            drop_configurations(k, &c->first_system);
-            drop_configurations(k, &c->second_system);
-            return RITZ_OK;
-        }
-        ritz_monitor_step("errors", k, rows->num_rows);
-        if (!row->listed)
-            RITZ_CHECK(ritz_stage_assemble(&c->second, row->setting, &second));
-        RITZ_CHECK(ritz_compare_measure(
-            rows->stage, c->V, ritz_rows_first(rows, k),
-            row->listed && rows->response ? &rows->response[k] : NULL,
-            row->listed ? &c->second_system.configuration[k] : &second, row));
+    while (r.from < rows->num_rows && !r.stopped) {
+        const int64_t k = begin_round(&r);
+        measuring m = {rows, c, r.from};
+
+        RITZ_CHECK(ritz_team_try(ritz_stage_threads(rows->stage, k - r.from),
+                                 k - r.from, measure_item, &m));
+        r.from = k;
     }
+    if (!r.stopped)
+        return RITZ_OK;
+    c->interrupted = true;
+    drop_rows(r.from, c);
+    drop_configurations(r.from, &c->first_system);
+    drop_configurations(r.from, &c->second_system);
     return RITZ_OK;
 }
 

@@ -102,7 +102,7 @@ ritz_status ritz_plan_system(const ritz_stage *stage,
  *
  * @param[in] system  stage one, at all listed configurations
  */
-ritz_status ritz_compare_threshold(const ritz_scene *scene,
+ritz_status ritz_compare_threshold(const ritz_stage *stage,
                                    const ritz_system *system, double *least);
 
 /**

@@ -7,7 +7,9 @@
  */
 #include "base/tolerances.h"
 
+#include "assembly/assembly.h"
 #include "base/alloc.h"
+#include "base/team.h"
 #include "compare/compare.h"
 #include "linear/orthonormal.h"
 #include "model/pair.h"
@@ -193,9 +195,32 @@ ritz_status ritz_compare_values(const ritz_scene *scene,
     return ritz_context(rank_modes(scene, c, value, joined), c->at);
 }
 
-ritz_status ritz_compare_threshold(const ritz_scene *scene,
+/* Values of the configurations of a system. */
+typedef struct system_values {
+    const ritz_scene *scene;
+    const ritz_system *system;
+    double *largest; /* value at each */
+} system_values;
+
+static ritz_status find_largest(int64_t k, void *task)
+{
+    const system_values *v = task;
+    const ritz_configuration *c = &v->system->configuration[k];
+    RITZ_OWN_ARRAY double *value = NULL;
+
+    RITZ_CHECK_NEW(value, c->K.ncol - c->num_rigid);
+    RITZ_CHECK(ritz_compare_values(v->scene, c, value, NULL));
+    for (int64_t j = 0; j < c->K.ncol - c->num_rigid; j++)
+        v->largest[k] = fmax(v->largest[k], value[j]);
+    return RITZ_OK;
+}
+
+ritz_status ritz_compare_threshold(const ritz_stage *stage,
                                    const ritz_system *system, double *least)
 {
+    const ritz_scene *scene = stage->scene;
+    const int64_t count = system->num_configurations;
+    RITZ_OWN_ARRAY double *each = NULL;
     double largest = 0.0;
 
     *least = 0.0;
@@ -207,15 +232,12 @@ ritz_status ritz_compare_threshold(const ritz_scene *scene,
                        "by nor a band to keep");
         return RITZ_OK;
     }
-    for (int64_t k = 0; k < system->num_configurations; k++) {
-        const ritz_configuration *c = &system->configuration[k];
-        RITZ_OWN_ARRAY double *value = NULL;
-
-        RITZ_CHECK_NEW(value, c->K.ncol - c->num_rigid);
-        RITZ_CHECK(ritz_compare_values(scene, c, value, NULL));
-        for (int64_t j = 0; j < c->K.ncol - c->num_rigid; j++)
-            largest = fmax(largest, value[j]);
-    }
+    RITZ_CHECK_NEW(each, count);
+    RITZ_CHECK(ritz_team_try(ritz_stage_threads(stage, count), count,
+                             find_largest,
+                             &(system_values){scene, system, each}));
+    for (int64_t k = 0; k < count; k++)
+        largest = fmax(largest, each[k]);
     RITZ_REFUSE_IF(
         largest <= 0.0, RITZ_ERR_ARGUMENT,
         "no flexible mode is controllable by an input and observable "

@@ -128,6 +128,25 @@ static void later_stops_leave_configurations_as_they_would_be(void **state)
     }
 }
 
+/* By three threads, stopped or not: the same bits as by one. */
+static void threads_change_neither_bits_nor_stops(void **state)
+{
+    const fixture *f = *state;
+    RITZ_OWN(ritz_comparison) c = {0};
+
+    dualspin_or_skip();
+    ritz_set_threads(3);
+    assert_ok(ritz_compare(&f->stage, &c));
+    a_stopped_first_stage_leaves_a_scene_of_fewer_angles(state);
+    later_stops_leave_configurations_as_they_would_be(state);
+    ritz_set_threads(1);
+    assert_int_equal(c.num_rows, f->c.num_rows);
+    assert_same_systems(6, &c.first_system, &f->c.first_system);
+    assert_same_systems(6, &c.second_system, &f->c.second_system);
+    for (int64_t i = 0; i < c.num_rows; i++)
+        assert_true(c.row[i].response_error == f->c.row[i].response_error);
+}
+
 static void a_comparison_that_is_not_stopped_is_whole(void **state)
 {
     const fixture *f = *state;
@@ -392,6 +411,7 @@ static void a_ranking_without_damping_is_refused(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_stopped_first_stage_leaves_a_scene_of_fewer_angles),
     cmocka_unit_test(later_stops_leave_configurations_as_they_would_be),
+    cmocka_unit_test(threads_change_neither_bits_nor_stops),
     cmocka_unit_test(a_comparison_that_is_not_stopped_is_whole),
     cmocka_unit_test(the_first_stage_has_the_orders_of_its_bases),
     cmocka_unit_test(kept_modes_are_exact_at_every_listed_angle),
