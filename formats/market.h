@@ -33,6 +33,9 @@ typedef struct ritz_market_entry {
 
 typedef struct ritz_market {
     ritz_lines text;
+    bool bare; /* no head has stated what follows, and there are no comments:
+                  while entries are read, nrow and ncol are INT64_MAX, `most` is
+                  at least their number, and the matrix is general */
     int layout, field, symmetry;
     const char *kind; /* its symmetry in words */
     int64_t nrow, ncol;
@@ -42,7 +45,8 @@ typedef struct ritz_market {
     int64_t digits;
 } ritz_market;
 
-/** Take the next line that is neither blank nor a comment, less its blanks. */
+/** Take the next line that is neither blank nor a comment, less the blanks
+ * before it. */
 bool ritz_market_next_line(ritz_market *m);
 
 /** Refuse dimensions that @p bytes of entries can hardly fill. */

@@ -128,7 +128,7 @@ bool ritz_market_next_line(ritz_market *m)
         while (text->line_end > text->line && text->line_end[-1] == '\r')
             text->line_end--;
         text->line = ritz_decimal_skip(text->line, text->line_end);
-        if (text->line < text->line_end && *text->line != '%')
+        if (text->line < text->line_end && (m->bare || *text->line != '%'))
             return true;
     }
     return false;
@@ -160,6 +160,10 @@ static ritz_status append_entry(ritz_market *m, ritz_market_entry e)
     RITZ_REFUSE_IF(m->count == m->most, RITZ_ERR_FORMAT,
                    "more entries than the %" PRId64 " that are declared",
                    m->most);
+    RITZ_REFUSE_IF(m->bare && (e.row < 0 || e.col < 0), RITZ_ERR_FORMAT,
+                   "entry (%" PRId64 ", %" PRId64
+                   ") is none: rows and columns are counted from 1",
+                   e.row + 1, e.col + 1);
     RITZ_REFUSE_IF(e.row < 0 || e.row >= m->nrow || e.col < 0 ||
                        e.col >= m->ncol,
                    RITZ_ERR_FORMAT,
@@ -189,10 +193,11 @@ static ritz_status read_entry(ritz_market *m)
     const char *at = m->text.line;
     int64_t n[2] = {0};
 
-    RITZ_REFUSE_IF(!ritz_decimal_scan_wholes(&at, m->text.line_end, 2, n),
-                   RITZ_ERR_FORMAT, "'%.*s' is not an entry 'row column value'",
-                   ritz_lines_quoted(m->text.line, m->text.line_end),
-                   m->text.line);
+    RITZ_REFUSE_IF(
+        !ritz_decimal_scan_wholes(&at, m->text.line_end, 2, n) ||
+            (m->field != RITZ_MARKET_PATTERN && at == m->text.line_end),
+        RITZ_ERR_FORMAT, "'%.*s' is not an entry 'row column value'",
+        ritz_lines_quoted(m->text.line, m->text.line_end), m->text.line);
     e.row = n[0] - 1;
     e.col = n[1] - 1;
     if (m->field != RITZ_MARKET_PATTERN)
@@ -243,8 +248,8 @@ static ritz_status read_lines_of_entries(ritz_market *m)
 /*
  * The text is cut into shares, contiguous runs of lines; each share is read by
  * one thread, and the entries are joined in the order of the file. If a share
- * cannot be read, or the number of entries differs from the declared one, one
- * thread reads all lines once more, so that the error names the first wrong
+ * cannot be read, or the number of entries is not the one that a head declares,
+ * one thread reads all lines once more, so that the error names the first wrong
  * line.
  */
 enum {
@@ -337,7 +342,7 @@ static bool read_in_shares(ritz_market *m)
         all.offset[k] = total;
         total += all.share[k].count;
     }
-    if (!right || total != m->most)
+    if (!right || total > m->most || (total < m->most && !m->bare))
         return false;
     ritz_team_each(threads, all.count, join_share, &all);
     m->count = total;
@@ -353,7 +358,7 @@ ritz_status ritz_market_read_entries(ritz_market *m)
     if (read_in_shares(m))
         return RITZ_OK;
     RITZ_CHECK(read_lines_of_entries(m));
-    RITZ_REFUSE_IF(m->count < m->most, RITZ_ERR_FORMAT,
+    RITZ_REFUSE_IF(m->count < m->most && !m->bare, RITZ_ERR_FORMAT,
                    "ends after %" PRId64 " of %" PRId64 " entries", m->count,
                    m->most);
     return RITZ_OK;

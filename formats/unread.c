@@ -89,37 +89,6 @@ static bool is_real(const char *at, const char *end)
     return point;
 }
 
-/* For lines "row column value" the number of triangles with entries, 1 or 2; 0
-   if there are other lines. */
-static int count_triangles(const char *bytes, int64_t size)
-{
-    ritz_lines text = lines_of(bytes, size);
-    bool above = false, below = false;
-    int64_t at_least = 0;
-
-    for (; at_least < MOST_LINES && next_line(&text); at_least++) {
-        const char *at = text.line;
-        int64_t place[2];
-
-        if (!ritz_decimal_scan_wholes(&at, text.line_end, 2, place) ||
-            place[0] < 1 || place[1] < 1 || !is_real(at, text.line_end))
-            return 0;
-        above = above || place[0] < place[1];
-        below = below || place[0] > place[1];
-    }
-    return at_least == 0 ? 0 : above && below ? 2 : 1;
-}
-
-static bool is_abaqus_matrix(const char *bytes, int64_t size)
-{
-    return count_triangles(bytes, size) == 2;
-}
-
-static bool is_calculix_matrix(const char *bytes, int64_t size)
-{
-    return count_triangles(bytes, size) == 1;
-}
-
 /* Lines "node.direction". */
 static bool is_calculix_dofs(const char *bytes, int64_t size)
 {
@@ -206,12 +175,7 @@ const ritz_unread ritz_unread_formats[] = {
     {"a Matrix Market file whose first line does not begin with two '%'",
      "write '%%MatrixMarket' there", has_short_banner},
     {"a Harwell-Boeing file", "write it as Matrix Market", is_harwell_boeing},
-    {"a matrix of Abaqus, of both triangles and without a header",
-     "put the header of Matrix Market before it", is_abaqus_matrix},
-    {"a matrix of CalculiX, of one triangle and without a header",
-     "put the header of Matrix Market before it", is_calculix_matrix},
-    {"a list of dofs of CalculiX", "put blanks for its points, for --dofs",
-     is_calculix_dofs},
+    {"a list of dofs of CalculiX", "it is for --dofs", is_calculix_dofs},
     {"a matrix of Abaqus as it reads matrices",
      "let Abaqus write it with FORMAT=COORDINATE", is_matrix_input},
     {"an input file of Abaqus or CalculiX",

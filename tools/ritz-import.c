@@ -27,7 +27,7 @@ int main(int argc, char **argv)
         CLI_TEXT("bulk", &it->bulk, "F",
                  "NASTRAN bulk data: grids, frames, sets"),
         CLI_TEXT("dofs", &it->dofs, "F",
-                 "names of rows: GRID COMP a line, COMP 0 for a scalar point"),
+                 "names of rows: GRID COMP or GRID.COMP a line, 0: a point"),
         CLI_TEXT("rows", &it->rows, "COMPS",
                  "rows at grids 1, 2, ..., as 126; 0: scalar points [123456]"),
         CLI_TEXT("frequencies", &it->frequencies, "F",

@@ -80,7 +80,7 @@ int main(int argc, char **argv)
         .name = "ritz-info",
         .operands = {{"FILE",
                       "a container, a matrix file (OUTPUT4, DMIG, "
-                      "Matrix Market, MAT) or bulk data",
+                      "Matrix Market, MAT, coordinates) or bulk data",
                       true}},
         .summary = "What is in a file: sizes, names, frequencies, checksums, "
                    "how it was made.",

@@ -1,7 +1,8 @@
 /*
  * Matrices in foreign files: NASTRAN OUTPUT4, DMIG and punch, Matrix Market,
- * MAT. A format is recognised by content, never by name. MAT 7.3 files are HDF5
- * files, which ritz_container_guard protects against.
+ * MAT, coordinates of CalculiX and Abaqus. A format is recognised by content,
+ * never by name. MAT 7.3 files are HDF5 files, which ritz_container_guard
+ * protects against.
  */
 #ifndef RITZ_IMPORT_H
 #define RITZ_IMPORT_H
@@ -89,6 +90,7 @@ typedef struct ritz_format {
 
 /** All formats of matrices, ended by NULL. */
 extern const ritz_format *const ritz_formats[];
+extern const ritz_format ritz_format_coordinates;
 extern const ritz_format ritz_format_dmig;
 extern const ritz_format ritz_format_mat;
 extern const ritz_format ritz_format_matrix_market;
@@ -278,7 +280,7 @@ typedef struct ritz_import_request {
     int64_t num_loads;
     const char *const *load; /* "F@LOAD" */
     const char *bulk;        /* file of a deck */
-    const char *dofs;        /* file of `GRID COMP` rows */
+    const char *dofs;        /* file of `GRID COMP` rows, or `NODE.COMP` ones */
     const char *rows; /* directions of every grid, "126"; "0": scalar points */
     const char *frequencies; /* of a component in modal form: file of its
                                 natural frequencies  [Hz] */

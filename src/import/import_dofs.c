@@ -1,4 +1,8 @@
-/* The dofs that a file names, one a line. */
+/*
+ * The dofs that a file names, one a line: "GRID COMP", or "NODE.COMP" as
+ * CalculiX writes them [Dhondt2022]. The latter is split at its point: of a
+ * number, a large node would leave no digit for the direction.
+ */
 #include "base/alloc.h"
 #include "base/text.h"
 #include "import/import.h"
@@ -35,33 +39,59 @@ static bool scan_plain_line(const char *line, ritz_dof *out)
            out->component <= 6;
 }
 
-/* `GRID COMP` of one line, which may be blank or end in a comment. */
-static ritz_status take_line(const char *path, int64_t number, char *line,
-                             ritz_roster *named)
+/* Whether the first dof that the text names is spelled "NODE.COMP". */
+static bool is_dotted(const char *text)
 {
-    char field[2][48] = {"", ""}, more[2] = "";
+    size_t digits = 0;
+
+    for (text += strspn(text, " \t\r\n"); *text == '#';
+         text += strspn(text, " \t\r\n"))
+        text += strcspn(text, "\n");
+    digits = strspn(text, "0123456789");
+    return digits > 0 && text[digits] == '.';
+}
+
+/* The two words of a line, and the first letter of what follows them. @return
+ * how many of the three there are */
+static int split_line(const char *line, bool dotted, char field[2][48])
+{
+    char more[2] = "";
+    int count = 0;
+
+    if (!dotted)
+        return sscanf(line, "%47s%47s%1s", field[0], field[1], more);
+    count = sscanf(line, " %47[0123456789].%47[0123456789]%1s", field[0],
+                   field[1], more);
+    return count > 0 ? count : sscanf(line, "%1s", more);
+}
+
+/* The dof of one line, which may be blank or end in a comment. */
+static ritz_status take_line(const char *path, int64_t number, bool dotted,
+                             char *line, ritz_roster *named)
+{
+    char field[2][48] = {"", ""};
     ritz_dof dof = {0};
     int count = 0;
 
-    if (scan_plain_line(line, &dof)) {
+    if (!dotted && scan_plain_line(line, &dof)) {
         named->place[named->count++] = (ritz_row_place){dof, number};
         return RITZ_OK;
     }
     line[strcspn(line, "#")] = '\0';
-    count = sscanf(line, "%47s%47s%1s", field[0], field[1], more);
+    count = split_line(line, dotted, field);
     if (count < 1)
         return RITZ_OK;
     RITZ_REFUSE_IF(count != 2 || !ritz_text_whole(field[0], &dof.grid) ||
                        !ritz_text_whole(field[1], &dof.component),
                    RITZ_ERR_FORMAT,
                    "'%s', line %" PRId64 ": a grid and its direction are due, "
-                   "such as '101 3'",
-                   path, number);
+                   "such as '101%c3'",
+                   path, number, dotted ? '.' : ' ');
     RITZ_REFUSE_IF(
         dof.grid < 1 || dof.component < 0 || dof.component > 6, RITZ_ERR_FORMAT,
-        "'%s', line %" PRId64 ": '%s %s' is no dof: grids are from 1 "
+        "'%s', line %" PRId64 ": '%s%c%s' is no dof: grids are from 1 "
         "on, directions 1 to 6, and 0 for a scalar point",
-        path, number, field[0], field[1]);
+        path, number, field[0], dotted ? '.' : ' ', field[1]);
     named->place[named->count++] = (ritz_row_place){dof, number};
     return RITZ_OK;
 }
@@ -103,11 +133,14 @@ ritz_status ritz_names_of_file(const char *path, ritz_row_names *out)
     RITZ_OWN(ritz_row_names) names = {0};
     RITZ_OWN(ritz_roster) named = {0}; /* at the numbers of their lines */
     RITZ_OWN_ARRAY char *text = NULL;
+    bool dotted = false;
     int64_t lines = 1;
     int64_t number = 0;
 
     RITZ_CHECK(ritz_text_read(path, &text));
-    RITZ_CHECK_IN(path, ritz_unread_refuse(text, (int64_t)strlen(text)));
+    dotted = is_dotted(text);
+    if (!dotted)
+        RITZ_CHECK_IN(path, ritz_unread_refuse(text, (int64_t)strlen(text)));
     for (const char *c = text; *c; c++)
         lines += *c == '\n';
     RITZ_CHECK_NEW(names.dof, lines);
@@ -117,7 +150,7 @@ ritz_status ritz_names_of_file(const char *path, ritz_row_names *out)
 
         if (end)
             *end = '\0';
-        RITZ_CHECK(take_line(path, ++number, at, &named));
+        RITZ_CHECK(take_line(path, ++number, dotted, at, &named));
         at = end ? end + 1 : NULL;
     }
     for (; names.count < named.count; names.count++)

@@ -75,6 +75,14 @@ MARKET = {
     "array": "%%MatrixMarket matrix array real general\n2 2\n1\n2\n3\n4\n",
     "lower": "%%MatrixMarket matrix array real symmetric\n2 2\n1\n2\n4\n",
 }
+COORDINATES = {
+    "calculix": "1 1  8.1311303948298e+08\n1 2  0.0000000000000e+00\n"
+                "2 2  1.2079857288409e+09\n1 3 -3.3714557439089e+00\n"
+                "3 3  6.1462414988168e+08\n",
+    "abaqus": "1 1  3.582994033916093e+10\n1 2  7.850217128178634e+09\n"
+              "2 1  7.850217128178634e+09\n2 2  3.582994033916093e+10\n",
+    "other": "\n 3 3 1.5D+3\r\n1 1 .5\n\n2 2\t-1\n",
+}
 DMIG = {
     "small": "DMIG,KAAX,0,6,2,0\n"
              "DMIG    KAAX           7       1               7       1    1.5\n"
@@ -177,6 +185,8 @@ DECK = {
 
 K = MARKET["symmetric"]
 IMPORT = {
+    "calculix": "stiffness K\nmass K\ndofs D\nport tip=12:1\n"
+                f">K\n{COORDINATES['calculix']}>D\n7.1\n7.2\n12.1\n",
     "dofs": "stiffness K\nmass K\ndofs D\nport tip=3:1\nport foot=1,2\n"
             "input u=3:1,2:1*-0.5\noutput y=3:1*2/vel@1e-3\n"
             "damper strut=1:1,3:1*4*0.5\nunits N/mm\n"
@@ -444,9 +454,10 @@ CORPUS = {
                 "two": OUTPUT4 + OUTPUT4_BIG, "binary": output4_binary(),
                 "swapped": output4_binary(True),
                 "complex": output4_binary(False, True)},
-    "matrix-market": MARKET, "dmig": DMIG, "mat": mat_files(),
-    "mat-hdf5": MAT_HDF5,
-    "matrices": {**FOREIGN, **MARKET, **DMIG, "output4": OUTPUT4},
+    "matrix-market": MARKET, "coordinates": COORDINATES, "dmig": DMIG,
+    "mat": mat_files(), "mat-hdf5": MAT_HDF5,
+    "matrices": {**FOREIGN, **MARKET, **COORDINATES, **DMIG,
+                 "output4": OUTPUT4},
     "deck": DECK, "import": IMPORT, "state-space": STATE_SPACE,
     "container": CONTAINER, "scene": SCENE, "signal": SIGNAL, "texts": TEXTS,
     "claims": CLAIMS, "records": RECORDS, "tracks": TRACKS,

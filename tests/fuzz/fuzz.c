@@ -16,6 +16,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 static const fuzz_target targets[] = {
     {"output4", "NASTRAN OUTPUT4, text and binary", fuzz_output4},
     {"matrix-market", "Matrix Market", fuzz_matrix_market},
+    {"coordinates", "entries without a header", fuzz_coordinates},
     {"dmig", "DMIG and punch files", fuzz_dmig},
     {"mat", "MAT level 5, compressed too", fuzz_mat},
     {"mat-hdf5", "MAT 7.3, sound HDF5 with any content", fuzz_mat_hdf5},

@@ -40,6 +40,11 @@ void fuzz_matrix_market(const char *bytes, int64_t size)
     read_as(&ritz_format_matrix_market, bytes, size);
 }
 
+void fuzz_coordinates(const char *bytes, int64_t size)
+{
+    read_as(&ritz_format_coordinates, bytes, size);
+}
+
 void fuzz_dmig(const char *bytes, int64_t size)
 {
     read_as(&ritz_format_dmig, bytes, size);

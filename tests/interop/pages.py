@@ -159,8 +159,12 @@ def write_samples():
     text = [f"{i} {j} {value!r}" for i, j, value in entries(K, True)]
     put("header.mtx", ["%" + market[0], *market[1:], *text])
     put_harwell_boeing("K.rsa", K)
-    put("both.txt", text)
-    put("one.txt", [f"{i} {j}  {v:.13e}" for i, j, v in entries(K, False)])
+    for name, A in (("STIF1", K), ("MASS1", M)):
+        put(f"part_{name}.mtx",
+            [f"{i} {j} {v:.15e}" for i, j, v in entries(A, True)])
+    for name, A in (("sti", K), ("mas", M)):
+        put(f"part.{name}",
+            [f"{i} {j}  {v:.13e}" for i, j, v in entries(A, False)])
     put("part.dof", [f"{n}.{c}" for n in (11, 12) for c in (1, 2, 3)])
     put("input.mtx", ["** of Abaqus", "11,1, 11,1, 1000.5"])
     put("part.inp", ["*Heading", "** two nodes", "*Node",
@@ -178,10 +182,9 @@ def recognise(path):
                       r"docs/import\.md shows", said)
     check(status == 1 and found, f"{pathlib.Path(path).name} is recognised",
           said)
-    option = "--dofs" if path == "part.dof" else "--stiffness"
-    status, again = tool("ritz-import", "--mass", "M.mtx", option, path, "-o",
-                         "none.h5")
-    check(status == 1 and found[1] in again, f"also by {option}", again)
+    status, again = tool("ritz-import", "--mass", "M.mtx", "--stiffness", path,
+                         "-o", "none.h5")
+    check(status == 1 and found[1] in again, "also by --stiffness", again)
     return found[1]
 
 
@@ -195,34 +198,41 @@ def check_matrix(sentence, allowed=0.0):
 
 def convert():
     text = section("import.md", "Files that are recognised and not read")
-    header, coordinates, dofs, nodes = blocks(text, "sh")
+    header, nodes = blocks(text, "sh")
     python, = blocks(text, "python")
     check(run("sh", "-c", header)[0] == 0, "a header gets its %")
     check_matrix("header")
     pathlib.Path("convert.py").write_text(python, encoding="utf-8")
     done = run("/usr/bin/python3", "-s", "convert.py")
     check(done[0] == 0, "Harwell-Boeing becomes Matrix Market", done[1])
-    check_matrix("Harwell-Boeing", 1e-12)  # sixteen digits of 3000
-    shutil.copy("both.txt", "K.txt")
-    check(run("sh", "-c", coordinates)[0] == 0, "Abaqus gets a header")
-    check_matrix("Abaqus")
-    shutil.copy("one.txt", "K.txt")
-    check(run("sh", "-c", coordinates.replace("general", "symmetric"))[0] == 0,
-          "CalculiX gets a header")
-    scipy.io.mmwrite("M.mtx", scipy.sparse.csc_matrix(M))
     check(run("sh", "-c", nodes)[0] == 0, "nodes become grids")
-    named = pathlib.Path("part.map").read_text(encoding="utf-8")
-    check(run("sh", "-c", dofs)[0] == 0, "dofs are named")
-    check(pathlib.Path("part.map").read_text(encoding="utf-8") == named,
-          "as those of the nodes are")
-    command = re.search(r"^    (ritz-import .*)$", text, re.M)[1].split()
+    check_component("Harwell-Boeing", command_of(text), 1e-12)
+    check_matrix("Harwell-Boeing", 1e-12)  # sixteen digits of 3000
+    text = section("import.md", "Recipes")
+    for code, allowed in (("CalculiX", 1e-9), ("Abaqus", 1e-11)):
+        recipe = re.search(rf"^### {code}\n(.*?)(?=^### |\Z)", text,
+                           re.M | re.S)[1]
+        check_component(code, command_of(recipe), allowed)
+
+
+def command_of(text):
+    return re.search(r"^    (ritz-import .*)$", text, re.M)[1].split()
+
+
+def check_component(origin, command, allowed):
+    """The component of a command of the page, by its matrix and its grids."""
     status, said = tool(*command)
-    check(status == 0, "all of it is imported", said)
+    check(status == 0, f"matrices of {origin} are imported", said)
     with h5py.File("part.h5") as file:
         check(list(file["grids/id"]) == [11, 12] and numpy.array_equal(
             file["grids/position"][:], [[0, 0, 0.5], [1.5, 0, 0]]) and
             list(file["dofs/component"]) == [1, 2, 3] * 2, "grid by grid")
-    check_matrix("CalculiX", 1e-9)  # fourteen digits of 3000
+        stored = file["K"]
+        A = scipy.sparse.csc_matrix(tuple(
+            stored[part][:] for part in ("data", "indices", "indptr")))
+        error = abs(A.toarray() - K).max()
+    check(error <= allowed, "with their stiffness", error)
+    os.remove("part.h5")
 
 
 def convert_external():
@@ -235,16 +245,16 @@ def convert_external():
     check(done[0] == 0, "lund_a.rsa is converted", done[1])
     A, B = scipy.io.mmread("K.mtx"), scipy.io.mmread(lund / "lund_a.mtx")
     check(abs(A - B).max() == 0.0, "and is lund_a.mtx")
-    for name, kind in (("calculix/conrod/conrod.sti", "CalculiX"),
-                       ("calculix/conrod/conrod.mas", "CalculiX"),
-                       ("calculix/conrod/conrod.dof", "dofs of CalculiX"),
+    for name, kind in (("calculix/conrod/conrod.dof", "dofs of CalculiX"),
                        ("calculix/conrod/conrod.inp", "input file of Abaqus"),
-                       ("abaqus/blockC3D4_STIF1.mtx", "matrix of Abaqus"),
                        ("abaqus/blockC3D10.inp", "input file of Abaqus"),
                        ("pairs/bcsst01/bcsstk01.rsa", "Harwell-Boeing"),
                        ("ansys/rotorAnsysNodalCoordinates.txt", "ANSYS")):
         status, said = tool("ritz-info", EXTERNAL / name)
         check(status == 1 and kind in said, f"{name} is recognised", said)
+    for name in ("calculix/conrod/conrod.sti", "abaqus/blockC3D4_STIF1.mtx"):
+        status, said = tool("ritz-info", EXTERNAL / name)
+        check(status == 0 and "coordinates" in said, f"{name} is read", said)
 
 
 def main():
@@ -256,8 +266,8 @@ def main():
         scipy.io.mmwrite("M.mtx", scipy.sparse.csc_matrix(M))
         write_samples()
         known = {recognise(path) for path in (
-            "header.mtx", "K.rsa", "both.txt", "one.txt", "part.dof",
-            "input.mtx", "part.inp", "file.full", "part.cdb")}
+            "header.mtx", "K.rsa", "part.dof", "input.mtx", "part.inp",
+            "file.full", "part.cdb")}
         text = section("import.md", "Files that are recognised and not read")
         listed = set(re.findall(r"^\| (an? [^|]+) \|", text, re.M))
         check(known == listed, "the page lists what is recognised",

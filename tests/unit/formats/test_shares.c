@@ -44,6 +44,15 @@ static void make_matrix(int64_t ncol, ritz_matrix *out)
     }
 }
 
+static void write_text(const char *path, const char *bytes, int64_t size)
+{
+    FILE *file = fopen(path, "wb");
+
+    assert_non_null(file);
+    assert_int_equal(fwrite(bytes, 1, (size_t)size, file), size);
+    assert_int_equal(fclose(file), 0);
+}
+
 /* Read the bytes of a file with that number of threads. sentence: why it
    failed, "" if it did not. */
 static ritz_status read_by(int threads, const char *bytes, int64_t size,
@@ -89,7 +98,8 @@ static ritz_status compare_readings(const char *bytes, int64_t size)
     return status;
 }
 
-/* Compare readings of a file as it is, with one byte changed, and cut short. */
+/* Compare readings of a file as it is, with one byte changed, and cut short, at
+   the end of a line too. */
 static void compare_damages(const char *path)
 {
     char *bytes = NULL;
@@ -110,6 +120,9 @@ static void compare_damages(const char *path)
     bytes[at] = good;
     refused += compare_readings(bytes, size / 2) != RITZ_OK;
     assert_true(refused > 0);
+    for (at = size / 10 * 9; at > 1 && bytes[at - 1] != '\n';)
+        at--;
+    (void)compare_readings(bytes, at);
     free(bytes);
     remove(path);
 }
@@ -182,6 +195,34 @@ static void threads_read_matrix_market_as_one_does(void **state)
     make_matrix(120, &m);
     assert_ok(ritz_matrix_market_write("shares.mtx", &m, "a comment"));
     compare_damages("shares.mtx");
+}
+
+/* The entries of a file of Matrix Market, without its head. */
+static void drop_head(char *bytes, int64_t *size)
+{
+    char *at = bytes;
+
+    while (*at == '%')
+        at = strchr(at, '\n') + 1;
+    at = strchr(at, '\n') + 1; /* sizes */
+    *size -= at - bytes;
+    memmove(bytes, at, (size_t)*size);
+}
+
+static void threads_read_coordinates_as_one_does(void **)
+{
+    RITZ_OWN(ritz_matrix) m = {0};
+    char *bytes = NULL;
+    int64_t size = 0;
+
+    make_matrix(120, &m);
+    assert_ok(ritz_matrix_market_write("shares.mtx", &m, "a comment"));
+    assert_ok(ritz_bytes_read("shares.mtx", &size, &bytes));
+    drop_head(bytes, &size);
+    write_text("shares.mtx", bytes, size);
+    free(bytes);
+    compare_damages("shares.mtx");
+    assert_string_equal(foreign_format, "coordinates");
 }
 
 /* Cards of DMIG with one term in each column. */
@@ -394,6 +435,13 @@ static void make_market(char **bytes, int64_t *size)
     assert_ok(ritz_bytes_read("shares.mtx", size, bytes));
 }
 
+static void make_coordinates(char **bytes, int64_t *size)
+{
+    make_market(bytes, size);
+    drop_head(*bytes, size);
+    remove("shares.mtx");
+}
+
 static void make_large_dmig(char **bytes, int64_t *size)
 {
     make_dmig(45000, bytes, size);
@@ -402,23 +450,15 @@ static void make_large_dmig(char **bytes, int64_t *size)
 /* Texts of 5 MB, which are mapped once a program wants it. */
 static const struct large_text {
     const char *path;
-    char comment; /* begins a line that is not read */
+    char comment; /* begins a line that is not read; a blank: it is blank */
     void (*make)(char **bytes, int64_t *size);
 } large_texts[] = {
     {"shares.mtx", '%', make_market},
+    {"shares.sti", ' ', make_coordinates},
     {"shares.dmig", '$', make_large_dmig},
 };
 
 enum { NUM_LARGE = sizeof large_texts / sizeof *large_texts };
-
-static void write_text(const char *path, const char *bytes, int64_t size)
-{
-    FILE *file = fopen(path, "wb");
-
-    assert_non_null(file);
-    assert_int_equal(fwrite(bytes, 1, (size_t)size, file), size);
-    assert_int_equal(fclose(file), 0);
-}
 
 /* The text without its last end of line, and with a comment behind its first
    line that makes its last page hold `rest` bytes, 0 for a full one. No byte
@@ -655,6 +695,7 @@ static const struct CMUnitTest tests[] = {
                               one_thread),
     cmocka_unit_test_teardown(threads_read_matrix_market_as_one_does,
                               one_thread),
+    cmocka_unit_test_teardown(threads_read_coordinates_as_one_does, one_thread),
     cmocka_unit_test_teardown(threads_read_dmig_as_one_does, one_thread),
     cmocka_unit_test_teardown(
         strings_of_an_unmarked_file_are_read_as_one_thread_does, one_thread),

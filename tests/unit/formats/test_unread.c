@@ -24,10 +24,6 @@ static const struct sample {
             "RSA                        1             1             1   0\n"
             "(2I8)           (2I8)           (2D20.12)\n"
             "       1       2\n       1\n  2.0D+00\n")},
-    {"a matrix of Abaqus, of both",
-     SAMPLE("1 1  3.5e+10\n1 2 -7.8e+09\r\n2 1 -7.8e+09\n\n2 2 3.5e+10\n")},
-    {"a matrix of CalculiX, of one",
-     SAMPLE("1 1  8.13E+08\n1 2  2.15E+02\n2 2  1.20E+09\n")},
     {"a list of dofs of CalculiX", SAMPLE("1.1\n1.2\n1.3\n12.1\n")},
     {"a matrix of Abaqus as it reads",
      SAMPLE("** comment\n1,1, 1,1, 3.5e+10\n2,1, 1,1, -7.8e+09\n")},
@@ -102,6 +98,8 @@ static void formats_that_are_read_are_not_taken_for_others(void **state)
         "%%MatrixMarket matrix coordinate real general\n1 1 1\n1 1 2.0\n",
         "1 1\n1 2\n", /* names of dofs */
         "345 345 7002\n1 1 1.6e8\n",
+        "1 1  3.5e+10\n1 2 -7.8e+09\r\n2 1 -7.8e+09\n\n2 2 3.5e+10\n",
+        "1 1  8.13E+08\n1 2  2.15E+02\n2 2  1.20E+09\n",
         "1.5\n2.25\n",
         "0.1 2\n",
         "hello\n",

@@ -1,4 +1,4 @@
-/* Files of `GRID COMP` rows, which --dofs names. */
+/* Files of `GRID COMP` or `NODE.COMP` rows, which --dofs names. */
 #include "import/import.h"
 #include "testing.h"
 
@@ -26,6 +26,8 @@ static const char *const samples[] = {
     "# of the rotor\r\n\r\n 7\t6 # a turn\r\n2001 0\r\n7 1",
     "1 0\n2 0\n3 0\n4 0\n5 0\n6 0\n7 0\n8 0\n9 0\n10 0\n11 0\n",
     "999999999999999999 6\n+5 3\n12345 4\n",
+    "101.1\n101.2\n101.3\n7.1\n7.6\n",
+    "# of CalculiX\n\n  12345678.1\r\n12345678.2 # a comment\n9.0\n",
 };
 
 static void rows_are_named_in_the_order_of_the_file(void **)
@@ -37,6 +39,26 @@ static void rows_are_named_in_the_order_of_the_file(void **)
     assert_int_equal(names.count, 3);
     for (int k = 0; k < 3; k++)
         assert_int_equal(ritz_dof_compare(&names.dof[k], &due[k]), 0);
+    ritz_row_names_free(&names);
+    remove(path);
+}
+
+/* A double of 16 digits has none left for the direction of the second. */
+static void dofs_of_calculix_are_split_at_the_point(void **)
+{
+    static const ritz_dof due[] = {{12345678, 1}, {12345678, 2}, {9, 0}};
+    ritz_row_names names = {0};
+
+    assert_ok(read_text(samples[5], &names));
+    assert_int_equal(names.count, 3);
+    for (int k = 0; k < 3; k++)
+        assert_int_equal(ritz_dof_compare(&names.dof[k], &due[k]), 0);
+    ritz_row_names_free(&names);
+    assert_ok(read_text("99999999999999999.2\n99999999999999999.3", &names));
+    assert_int_equal(names.dof[0].grid, 99999999999999999);
+    assert_int_equal(names.dof[0].component, 2);
+    assert_int_equal(names.dof[1].grid, 99999999999999999);
+    assert_int_equal(names.dof[1].component, 3);
     ritz_row_names_free(&names);
     remove(path);
 }
@@ -54,6 +76,19 @@ static void what_is_wrong_is_said_with_its_line(void **)
         {"1 -1\n", "line 1: '1 -1' is no dof"},
         {"0 1\n", "line 1: '0 1' is no dof"},
         {"99999999999999999999 1\n", "line 1: a grid and its direction"},
+        {"5.2\n6.7\n", "line 2: '6.7' is no dof"},
+        {"5.2\n0.1\n", "line 2: '0.1' is no dof"},
+        {"5.2\n6 1\n",
+         "line 2: a grid and its direction are due, such as '101.3'"},
+        {"5.2\n6.1 2\n", "line 2: a grid and its direction are due"},
+        {"5.2\n.1\n", "line 2: a grid and its direction are due"},
+        {"5.2\n6.\n", "line 2: a grid and its direction are due"},
+        {"5.2\n6.-1\n", "line 2: a grid and its direction are due"},
+        {"5.2\n6.1e3\n", "line 2: a grid and its direction are due"},
+        {"5 2\n6.1\n",
+         "line 2: a grid and its direction are due, such as '101 3'"},
+        {"99999999999999999999.1\n", "line 1: a grid and its direction"},
+        {"5.2\n4.1\n5.2\n", "line 3: 'grid 5 T2' was named at line 1 already"},
         {"5 2\n4 1\n# c\n5 2\n",
          "line 4: 'grid 5 T2' was named at line 1 already"},
     };
@@ -128,6 +163,8 @@ static ritz_status read_and_drop(void)
 
 static void every_allocation_may_fail(void **)
 {
+    write_file(samples[4], strlen(samples[4]));
+    assert_survives_every_allocation(read_and_drop());
     write_file(samples[0], strlen(samples[0]));
     assert_survives_every_allocation(read_and_drop());
     remove(path);
@@ -135,6 +172,7 @@ static void every_allocation_may_fail(void **)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(rows_are_named_in_the_order_of_the_file),
+    cmocka_unit_test(dofs_of_calculix_are_split_at_the_point),
     cmocka_unit_test(what_is_wrong_is_said_with_its_line),
     cmocka_unit_test(a_file_cut_or_corrupted_anywhere_is_answered),
     cmocka_unit_test(every_allocation_may_fail),
