@@ -6,10 +6,10 @@ static void list_formats(void)
     for (const ritz_exporter *const *e = ritz_exporters; *e; e++)
         printf("%-16s %-9s %-52s [%s]\n", (*e)->name, (*e)->kind, (*e)->summary,
                (*e)->reference);
-    printf("\nreduced: a reduced component and, but for exudyn, a system at a "
-           "configuration (--at),\neither of which --states makes a state "
-           "space, or a state space.\nshapes: modes of a component, of a "
-           "reduced component, or of a system, whose bodies\n--component "
+    printf("\nreduced: a reduced component and, but for exudyn and dmig,\n"
+           "a system at a configuration (--at), either of which --states makes "
+           "a state space,\nor a state space.\nshapes: modes of a component, "
+           "of a reduced component, or of a system, whose bodies\n--component "
            "names; columns of a basis.\n");
 }
 
@@ -28,6 +28,8 @@ int main(int argc, char **argv)
                  "write every entry, zeros too (output4)"),
         CLI_INT("digits", &request->digits, "N", 1, 17,
                 "significant digits of text [17]"),
+        CLI_FLAG("numbered", &request->numbered,
+                 "number continuations, as NASTRAN-95 wants them (dmig)"),
         MODEL_OPTIONS(&given.model),
         CLI_FLAG("states", &given.states,
                  "write the states x' = A x + B u, y = C x + D u, with damping "

@@ -71,12 +71,14 @@ typedef struct ritz_export_request {
     const char *matrices;    /* "K,M"; NULL: all that the format takes */
     bool text, dense;        /* output4 */
     int64_t digits;          /* text */
+    bool numbered;           /* dmig: continuations have marks */
     const char *modes;       /* shapes: which modes, "1-6,9"; NULL: the first
                                 ten of a component, all of anything else */
     const ritz_stamp *stamp; /* container: its stamp; NULL: an empty one */
 } ritz_export_request;
 
-/* Lines for the user: what was written, and what was lost. */
+/* Lines for the user: what was written, and what was lost; one that begins with
+   "warning: " is a warning. */
 typedef struct ritz_export_report {
     int64_t count;
     char (*line)[256];
@@ -101,6 +103,7 @@ enum {
     RITZ_EXPORT_SHAPES = 16,
     RITZ_EXPORT_MATRICES = 32,
     RITZ_EXPORT_STYLE = 64,
+    RITZ_EXPORT_NUMBERED = 128,
 };
 
 typedef struct ritz_exporter {
@@ -117,6 +120,7 @@ typedef struct ritz_exporter {
 /** All exporters, ended by NULL. */
 extern const ritz_exporter *const ritz_exporters[];
 extern const ritz_exporter ritz_exporter_container;
+extern const ritz_exporter ritz_exporter_dmig;
 extern const ritz_exporter ritz_exporter_exudyn;
 extern const ritz_exporter ritz_exporter_matlab;
 extern const ritz_exporter ritz_exporter_matrix_market;

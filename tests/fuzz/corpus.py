@@ -386,6 +386,8 @@ COMMANDS = {
                       "-o", "o"),
     "export-matrix": command("ritz-export", "r.h5", "--to", "matrix-market",
                              "--matrix", "K,M", "-oo"),
+    "export-dmig": command("ritz-export", "r.h5", "--to=dmig", "--numbered",
+                           "--force", "-oo"),
     "export-bodies": command("ritz-export", "s.h5", "--to", "xdmf", "--at",
                              "clock=0,cone=0", "--component", "stator=r.h5",
                              "--component", "rotor=r.h5", "-oo"),

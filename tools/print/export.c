@@ -427,6 +427,22 @@ static ritz_status check_kind(const model *m, const char *path,
     return RITZ_OK;
 }
 
+/* What the exporter did; a line that begins so is a warning. */
+static void say_report(cli_run *run, const ritz_export_report *done)
+{
+    static const char warning[] = "warning: ";
+
+    SINK_EACH(run, "said", k, done->count) {
+        const char *line = done->line[k];
+
+        if (strncmp(line, warning, strlen(warning)) == 0)
+            cli_warn(run, "%s", line + strlen(warning));
+        else
+            cli_say(run, "  %s", line);
+        sink_add(run, "%s", line);
+    }
+}
+
 ritz_status export_run(cli_run *run, const export_options *given)
 {
     const char *path = run->operand[0];
@@ -446,9 +462,6 @@ ritz_status export_run(cli_run *run, const export_options *given)
     RITZ_CHECK(settle_damping(&m, path, given));
     RITZ_CHECK(export_model(run, &m, given, &done));
     cli_say(run, "%s: %s", run->output, given->exporter->summary);
-    SINK_EACH(run, "said", k, done.count) {
-        cli_say(run, "  %s", done.line[k]);
-        sink_add(run, "%s", done.line[k]);
-    }
+    say_report(run, &done);
     return RITZ_OK;
 }

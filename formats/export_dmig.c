@@ -1,0 +1,696 @@
+/*
+ * A reduced component as DMIG cards of NASTRAN's bulk data: stiffness, mass
+ * and damping between the grids of its interface and scalar points, which are
+ * the other coordinates.
+ *
+ *     DMIG     NAME  0   IFO  TIN  0               IFO 6 symmetric, 1 square;
+ *     DMIG*    NAME  GJ  CJ                        TIN 2 real, double
+ *     *        G1    C1  A1                        one line for each term
+ *
+ * A coordinate belongs to a grid if its column is that of a constraint, whose
+ * row of T is a unit vector: then q_j is that displacement itself, along the
+ * grid's own axes. Of a symmetric matrix the lower triangle is written, as
+ * both would be fatal to NASTRAN [Nastran1986] [MSC2012].
+ *
+ * Forces of rigid motion are small differences of large entries, so
+ * that rounding holds a free body, by springs of either sign. What rounding
+ * does is measured on the rounded matrices and stated in the report and in the
+ * file.
+ */
+#include "base/alloc.h"
+#include "base/tolerances.h"
+#include "formats/cards.h"
+#include "formats/large_field.h"
+#include "formats/sink.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    LARGEST_ID = 99999999, /* of grids and scalar points */
+    COMMENT = 68,          /* columns of text behind "$ " */
+    SYMMETRIC = 6,         /* IFO */
+    SQUARE = 1,
+    MARKER_SIZE = 8 + 1,
+};
+
+/* How a matrix is called, and the case control commands that take it. */
+typedef struct dmig_kind {
+    const char *name, *card;
+    const char *symmetric, *square; /* NULL: none takes an unsymmetric one */
+} dmig_kind;
+
+static const dmig_kind kinds[] = {
+    {"K", "KAAX", "K2GG", "K2PP"},
+    {"M", "MAAX", "M2GG", "M2PP"},
+    {"D", "BAAX", "B2GG", "B2PP"},
+    {"K4", "K4AAX", "K42GG", NULL},
+};
+
+/* A matrix before and after rounding. */
+typedef struct dmig_matrix {
+    const dmig_kind *kind;
+    bool symmetric;
+    double averaged; /* relative asymmetry of a symmetric one, by rounding */
+    ritz_dense exact, rounded;
+    int64_t stored, changed; /* numbers written; those that differ */
+    double change;           /* the largest, relative to the number */
+} dmig_matrix;
+
+typedef struct dmig_deck {
+    const ritz_reduced *reduced;
+    const ritz_export_request *request;
+    const ritz_export_report *report;
+    int64_t count; /* of matrices */
+    dmig_matrix matrix[sizeof kinds / sizeof *kinds];
+    int64_t order;       /* r */
+    ritz_dof *dof;       /* r, of each coordinate */
+    int64_t *at;         /* r, coordinates with their dofs ascending */
+    int64_t num_grids;   /* dofs of the interface, the first of `at` */
+    int64_t first_point; /* number of the first scalar point */
+} dmig_deck;
+
+static void dmig_deck_free(dmig_deck *deck)
+{
+    for (int64_t k = 0; k < deck->count; k++) {
+        ritz_dense_free(&deck->matrix[k].exact);
+        ritz_dense_free(&deck->matrix[k].rounded);
+    }
+    RITZ_FREE(deck->dof, deck->at);
+}
+
+/* ---- rounding ------------------------------------------------------------ */
+
+/* Round A(i,j) as its field does, and count. */
+static ritz_status round_entry(dmig_matrix *m, int64_t i, int64_t j)
+{
+    const double x = ritz_dense_col(&m->exact, j)[i];
+    double *y = &ritz_dense_col(&m->rounded, j)[i];
+    char text[RITZ_LARGE_FIELD_SIZE];
+
+    RITZ_REFUSE_IF(!isfinite(x), RITZ_ERR_ARGUMENT,
+                   "row %" PRId64 " of column %" PRId64
+                   " of '%s' is not finite",
+                   i + 1, j + 1, m->kind->name);
+    ritz_large_field_print(x, text);
+    RITZ_REFUSE_IF(!ritz_card_number(text, y), RITZ_ERR_ARGUMENT,
+                   "%g of '%s' is too large for a field", x, m->kind->name);
+    m->stored += x != 0.0;
+    m->changed += *y != x;
+    if (x != 0.0)
+        m->change = fmax(m->change, fabs(*y / x - 1.0));
+    return RITZ_OK;
+}
+
+static ritz_status round_matrix(dmig_matrix *m)
+{
+    const int64_t n = m->exact.nrow;
+
+    RITZ_CHECK(ritz_dense_new(n, n, &m->rounded));
+    for (int64_t j = 0; j < n; j++)
+        for (int64_t i = m->symmetric ? j : 0; i < n; i++) {
+            RITZ_CHECK(round_entry(m, i, j));
+            if (m->symmetric)
+                ritz_dense_col(&m->rounded, i)[j] =
+                    ritz_dense_col(&m->rounded, j)[i];
+        }
+    return RITZ_OK;
+}
+
+/* ---- grids and points ---------------------------------------------------- */
+
+/* Whether q_j is the displacement of this row of T. */
+static bool is_displacement(const ritz_dense *T, int64_t row, int64_t j)
+{
+    for (int64_t k = 0; k < T->ncol; k++)
+        if (ritz_dense_col(T, k)[row] != (k == j ? 1.0 : 0.0))
+            return false;
+    return true;
+}
+
+static ritz_status find_interface(const ritz_reduced *reduced, dmig_deck *deck)
+{
+    const ritz_columns *columns = &reduced->columns;
+
+    for (int64_t j = 0; j < deck->order; j++) {
+        const int64_t row = columns->dof[j];
+        char name[RITZ_DOF_NAME_SIZE];
+
+        if (row < 0)
+            continue;
+        RITZ_REFUSE_IF(
+            columns->kind[j] != RITZ_COLUMN_CONSTRAINT ||
+                !is_displacement(&reduced->T, row, j),
+            RITZ_ERR_ARGUMENT,
+            "%s is attached, but no coordinate is its displacement, as DMIG "
+            "wants it: reduce by craig-bampton or guyan",
+            ritz_dof_name(reduced->dof[row], name));
+        deck->dof[j] = reduced->dof[row];
+        deck->num_grids++;
+    }
+    RITZ_REFUSE_IF(deck->num_grids == 0, RITZ_ERR_ARGUMENT,
+                   "no coordinate is the displacement of a grid, by which "
+                   "DMIG is joined to a model: reduce by craig-bampton or "
+                   "guyan with a port attached");
+    return RITZ_OK;
+}
+
+/* The largest number of a grid or a point of the full component. */
+static int64_t find_largest(const ritz_reduced *reduced)
+{
+    int64_t largest = 0;
+
+    for (int64_t k = 0; k < reduced->num_dofs; k++)
+        if (reduced->dof[k].grid > largest)
+            largest = reduced->dof[k].grid;
+    for (int64_t k = 0; k < reduced->recovery.count; k++)
+        if (reduced->recovery.dof[k].grid > largest)
+            largest = reduced->recovery.dof[k].grid;
+    for (int64_t k = 0; k < reduced->grids.count; k++)
+        if (reduced->grids.id[k] > largest)
+            largest = reduced->grids.id[k];
+    return largest;
+}
+
+/* Scalar points begin behind the next power of ten or, if there is no room,
+   behind the last grid. */
+static ritz_status number_points(dmig_deck *deck)
+{
+    const int64_t count = deck->order - deck->num_grids;
+    const int64_t largest = find_largest(deck->reduced);
+    int64_t base = 1000;
+    int64_t next = 0;
+
+    while (base <= largest && base <= LARGEST_ID)
+        base *= 10;
+    if (base + count > LARGEST_ID)
+        base = largest;
+    RITZ_REFUSE_IF(base + count > LARGEST_ID, RITZ_ERR_ARGUMENT,
+                   "grid %" PRId64 " leaves no numbers up to %d for %" PRId64
+                   " scalar points",
+                   largest, LARGEST_ID, count);
+    deck->first_point = base + 1;
+    for (int64_t j = 0; j < deck->order; j++)
+        if (deck->dof[j].grid == 0)
+            deck->dof[j].grid = deck->first_point + next++;
+    return RITZ_OK;
+}
+
+typedef struct dmig_place {
+    ritz_dof dof;
+    int64_t j;
+} dmig_place;
+
+static int compare_places(const void *left, const void *right)
+{
+    return ritz_dof_compare(&((const dmig_place *)left)->dof,
+                            &((const dmig_place *)right)->dof);
+}
+
+static ritz_status sort_coordinates(dmig_deck *deck)
+{
+    RITZ_OWN_ARRAY dmig_place *place = NULL;
+
+    RITZ_CHECK_NEW(place, deck->order);
+    for (int64_t j = 0; j < deck->order; j++)
+        place[j] = (dmig_place){deck->dof[j], j};
+    qsort(place, (size_t)deck->order, sizeof *place, compare_places);
+    for (int64_t k = 0; k < deck->order; k++)
+        deck->at[k] = place[k].j;
+    return RITZ_OK;
+}
+
+static ritz_status name_coordinates(dmig_deck *deck)
+{
+    const ritz_reduced *reduced = deck->reduced;
+
+    RITZ_REFUSE_IF(!reduced->T.val || !reduced->dof, RITZ_ERR_ARGUMENT,
+                   "it was made --without-basis: whose displacements its "
+                   "coordinates are is not known");
+    deck->order = reduced->K.nrow;
+    RITZ_CHECK_NEW(deck->dof, deck->order);
+    RITZ_CHECK_NEW(deck->at, deck->order);
+    RITZ_CHECK(find_interface(reduced, deck));
+    RITZ_CHECK(number_points(deck));
+    return sort_coordinates(deck);
+}
+
+static bool in_interface(const dmig_deck *deck, int64_t grid)
+{
+    for (int64_t k = 0; k < deck->num_grids; k++)
+        if (deck->dof[deck->at[k]].grid == grid)
+            return true;
+    return false;
+}
+
+/* ---- matrices ------------------------------------------------------------ */
+
+/* Every entry of an exported matrix is stored, column after column. */
+static ritz_status take_matrix(const ritz_matrix *from, dmig_matrix *m)
+{
+    const ritz_dense all = {from->A.nrow, from->A.ncol, from->A.val};
+
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
+        if (strcmp(kinds[k].name, from->name) == 0)
+            m->kind = &kinds[k];
+    RITZ_CHECK(ritz_dense_copy(&all, &m->exact));
+    m->averaged = ritz_dense_asymmetry(&m->exact);
+    m->symmetric = m->averaged <= RITZ_SYMMETRIC;
+    if (m->symmetric)
+        ritz_dense_symmetrise(&m->exact);
+    RITZ_REFUSE_IF(!m->symmetric && !m->kind->square, RITZ_ERR_ARGUMENT,
+                   "'%s' is not symmetric, and NASTRAN takes no such matrix",
+                   from->name);
+    return round_matrix(m);
+}
+
+static ritz_status take_matrices(const ritz_export_object *object,
+                                 ritz_export_report *report, dmig_deck *deck)
+{
+    RITZ_OWN(ritz_matrices) list = {0};
+
+    RITZ_CHECK(
+        ritz_export_damped(object, deck->request, "K,M,D,K4", report, &list));
+    for (int64_t k = 0; k < list.count; k++)
+        RITZ_CHECK(take_matrix(&list.matrix[k], &deck->matrix[deck->count++]));
+    return RITZ_OK;
+}
+
+/* ---- what rounding does -------------------------------------------------- */
+
+typedef struct dmig_audit {
+    int64_t motions;      /* rigid ones, by the exact matrices */
+    int64_t left;         /* still counted as rigid after rounding */
+    double before, after; /* max|K r| / max|K| */
+    double lowest;        /* eigenvalue over first flexible one, rounded */
+    double rigid_hz, first_hz;
+    double to_hz, change; /* of frequencies in the band */
+} dmig_audit;
+
+/* max|A r| / max|A| over rigid modes r whose largest entry is 1. */
+static ritz_status find_residual(const ritz_dense *A, const ritz_pairs *pairs,
+                                 double *out)
+{
+    RITZ_OWN(ritz_dense) F = {0};
+    const ritz_dense R = ritz_dense_part(&pairs->Phi, 0, pairs->num_rigid);
+    const double size = ritz_dense_max(A);
+
+    *out = 0.0;
+    if (R.ncol == 0)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_dense_mul(A, &R, &F));
+    for (int64_t j = 0; size > 0.0 && j < R.ncol; j++)
+        *out = fmax(*out, ritz_dense_col_max(&F, j) /
+                              (ritz_dense_col_max(&R, j) * size));
+    return RITZ_OK;
+}
+
+/* Modes are kept up to here; of the whole basis if none says. */
+static double find_band(const ritz_columns *columns, const ritz_pairs *pairs)
+{
+    double most = 0.0;
+
+    for (int64_t j = 0; j < columns->count; j++)
+        most = fmax(most, columns->hertz[j]); /* which ignores NaN */
+    if (most == 0.0 && pairs->Phi.ncol > 0)
+        most = ritz_eigen_hertz(pairs->lambda[pairs->Phi.ncol - 1]);
+    return most;
+}
+
+static void compare_frequencies(const ritz_pairs *exact,
+                                const ritz_pairs *rounded, dmig_audit *out)
+{
+    const int64_t first = exact->num_rigid;
+
+    if (first >= exact->Phi.ncol || first >= rounded->Phi.ncol)
+        return;
+    out->first_hz = ritz_eigen_hertz(exact->lambda[first]);
+    for (int64_t k = 0; k < first; k++)
+        out->rigid_hz =
+            fmax(out->rigid_hz, fabs(ritz_eigen_hertz(rounded->lambda[k])));
+    out->lowest = rounded->lambda[0] / exact->lambda[first];
+    for (int64_t k = first; k < exact->Phi.ncol && k < rounded->Phi.ncol; k++) {
+        const double f = ritz_eigen_hertz(exact->lambda[k]);
+
+        if (f <= out->to_hz || k == first)
+            out->change = fmax(out->change,
+                               fabs(ritz_eigen_hertz(rounded->lambda[k]) - f) /
+                                   fmax(fabs(f), out->first_hz));
+    }
+}
+
+static ritz_status audit_rounding(const dmig_deck *deck, dmig_audit *out)
+{
+    const dmig_matrix *K = &deck->matrix[0]; /* always there, and first */
+    const dmig_matrix *M = &deck->matrix[1];
+    RITZ_OWN(ritz_pairs) exact = {0}, rounded = {0};
+    dmig_audit audit = {0};
+
+    RITZ_CHECK_IN("modes", ritz_eigen_dense(&K->exact, &M->exact, &exact));
+    RITZ_CHECK_IN("modes of the rounded matrices",
+                  ritz_eigen_dense(&K->rounded, &M->rounded, &rounded));
+    audit.motions = exact.num_rigid;
+    audit.left = rounded.num_rigid;
+    RITZ_CHECK(find_residual(&K->exact, &exact, &audit.before));
+    RITZ_CHECK(find_residual(&K->rounded, &exact, &audit.after));
+    audit.to_hz = find_band(&deck->reduced->columns, &exact);
+    compare_frequencies(&exact, &rounded, &audit);
+    *out = audit;
+    return RITZ_OK;
+}
+
+/* ---- report -------------------------------------------------------------- */
+
+static ritz_status say_coordinates(const dmig_deck *deck,
+                                   ritz_export_report *report)
+{
+    const int64_t points = deck->order - deck->num_grids;
+
+    RITZ_CHECK(ritz_export_say(report,
+                               "%" PRId64 " dofs of interface grids, along the "
+                               "axes of each grid (its CD)",
+                               deck->num_grids));
+    if (points > 0)
+        RITZ_CHECK(ritz_export_say(
+            report,
+            "%" PRId64 " other coordinates are SPOINT %" PRId64 " to %" PRId64
+            ", in the order of columns",
+            points, deck->first_point, deck->first_point + points - 1));
+    return RITZ_OK;
+}
+
+static ritz_status say_matrix(const dmig_matrix *m, ritz_export_report *report)
+{
+    const char *with = m->symmetric ? m->kind->symmetric : m->kind->square;
+
+    if (m->symmetric && m->averaged > 0.0)
+        RITZ_CHECK(ritz_export_say(
+            report,
+            "an asymmetry of %s by %.1e of its largest entry is averaged away",
+            m->kind->name, m->averaged));
+    return ritz_export_say(
+        report,
+        "%s is for %s = %s%s: %" PRId64 " of %" PRId64
+        " numbers are rounded, by %.1e of themselves at most",
+        m->kind->name, with, m->kind->card,
+        m->symmetric ? "" : " (unsymmetric, IFO 1)", m->changed, m->stored,
+        m->change);
+}
+
+static ritz_status say_free(const dmig_audit *audit, ritz_export_report *report)
+{
+    RITZ_CHECK(ritz_export_say(
+        report,
+        "%" PRId64 " rigid motions r, of largest entry 1: max|K r| / max|K| "
+        "is %.1e, before rounding %.1e",
+        audit->motions, audit->after, audit->before));
+    if (audit->first_hz > 0.0)
+        RITZ_CHECK(ritz_export_say(
+            report,
+            "their lowest eigenvalue becomes %.1e of the first flexible one, "
+            "which is at %.6g Hz",
+            audit->lowest, audit->first_hz));
+    if (audit->left < audit->motions)
+        RITZ_CHECK(ritz_export_say(
+            report,
+            "warning: the body is no longer free: rounding holds %" PRId64
+            " of %" PRId64 " rigid motions, at up to %.3g Hz; output4 keeps "
+            "all digits",
+            audit->motions - audit->left, audit->motions, audit->rigid_hz));
+    return RITZ_OK;
+}
+
+static ritz_status say_audit(const dmig_audit *audit,
+                             ritz_export_report *report)
+{
+    if (audit->motions > 0)
+        RITZ_CHECK(say_free(audit, report));
+    else
+        RITZ_CHECK(ritz_export_say(report, "no motion is rigid: the body is "
+                                           "held by its own stiffness"));
+    if (audit->first_hz > 0.0)
+        RITZ_CHECK(ritz_export_say(
+            report,
+            "frequencies up to %.6g Hz change by %.1e of themselves at most",
+            audit->to_hz, audit->change));
+    return RITZ_OK;
+}
+
+static ritz_status say_losses(const dmig_deck *deck, ritz_export_report *report)
+{
+    const ritz_reduced *reduced = deck->reduced;
+
+    for (int64_t p = 0; p < reduced->num_ports; p++) {
+        const ritz_port_map *port = &reduced->port[p];
+        bool all = true;
+
+        for (int64_t k = 0; k < port->count; k++)
+            all = all && in_interface(deck, port->dof[k].grid);
+        if (!all)
+            RITZ_CHECK(ritz_export_say(report,
+                                       "port '%s' is left out: it was not "
+                                       "attached",
+                                       port->name));
+    }
+    return ritz_export_say(report, "left out, as DMIG has no place for them: "
+                                   "shapes of other grids, inputs and "
+                                   "outputs, inertia");
+}
+
+/* ---- the file ------------------------------------------------------------ */
+
+/* Characters of the next comment: up to a blank if not all of the text fits. */
+static int cut_comment(const char *text)
+{
+    int length = (int)strnlen(text, COMMENT);
+
+    if (text[length])
+        for (int k = length; k > 0; k--)
+            if (text[k - 1] == ' ')
+                return k;
+    return length;
+}
+
+/* A line of text as comments that fit a card. */
+static void put_comment(FILE *file, const char *text)
+{
+    do {
+        const int length = cut_comment(text);
+
+        fputs("$ ", file);
+        for (int k = 0; k < length; k++)
+            fputc((unsigned char)text[k] < ' ' ? '?' : text[k], file);
+        fputc('\n', file);
+        text += length;
+    } while (*text);
+}
+
+static void put_measures(FILE *file, const char *title,
+                         const ritz_measures *measures)
+{
+    char text[4 * RITZ_NAME_SIZE];
+
+    if (measures->count > 0)
+        put_comment(file, title);
+    for (int64_t k = 0; k < measures->count; k++) {
+        const ritz_measure *one = &measures->item[k];
+
+        snprintf(text, sizeof text, "  %s %.4e%s%s", one->name, one->value,
+                 *one->where ? " at " : "", one->where);
+        put_comment(file, text);
+        if (!isnan(one->limit)) {
+            snprintf(text, sizeof text, "    with a limit of %.4e", one->limit);
+            put_comment(file, text);
+        }
+    }
+}
+
+/* Where it comes from and what is known of its errors. */
+static void put_certificate(FILE *file, const dmig_deck *deck)
+{
+    const ritz_reduced *reduced = deck->reduced;
+    const ritz_stamp *stamp = deck->request->stamp;
+    char text[RITZ_DAMPING_SIZE + RITZ_NAME_SIZE];
+
+    snprintf(text, sizeof text, "reduced component, by %s %s",
+             reduced->origin.method, reduced->origin.options);
+    put_comment(file, text);
+    if (stamp && stamp->command)
+        put_comment(file, stamp->command);
+    for (int64_t k = 0; stamp && k < stamp->num_inputs; k++)
+        put_comment(file, stamp->input[k]);
+    if (*reduced->units) {
+        snprintf(text, sizeof text, "units: %s", reduced->units);
+        put_comment(file, text);
+    }
+    if (*reduced->damping) {
+        snprintf(text, sizeof text, "damping: %s", reduced->damping);
+        put_comment(file, text);
+    }
+    put_measures(file, "errors that were measured:", &reduced->errors);
+    put_measures(file, "errors that were estimated:", &reduced->estimates);
+    if (reduced->errors.count + reduced->estimates.count == 0)
+        put_comment(file, "nothing is known of its errors");
+}
+
+/* Where the grids are: the model that takes the matrices has them. */
+static void put_places(FILE *file, const dmig_deck *deck)
+{
+    const ritz_grids *grids = &deck->reduced->grids;
+    int64_t last = 0;
+    char text[4 * RITZ_NAME_SIZE];
+
+    for (int64_t k = 0; k < deck->num_grids; k++) {
+        const int64_t id = deck->dof[deck->at[k]].grid;
+        const int64_t g = ritz_grids_find(grids, id);
+
+        if (id == last || g < 0)
+            continue;
+        snprintf(text, sizeof text, "grid %" PRId64 " at %.9g %.9g %.9g%s", id,
+                 grids->position[3 * g], grids->position[3 * g + 1],
+                 grids->position[3 * g + 2],
+                 grids->frame[g] > 0 ? ", with axes of its own (CD)" : "");
+        put_comment(file, text);
+        last = id;
+    }
+}
+
+/* Continuations: a mark in columns 73 to 80, and again where the next line
+   begins, or nothing but the star. */
+typedef struct dmig_marks {
+    bool numbered;
+    int64_t count;
+    char mark[MARKER_SIZE]; /* with which the next line begins */
+} dmig_marks;
+
+/* "*R" and six digits to the base 36, of which no two are equal. */
+static void next_mark(dmig_marks *marks)
+{
+    static const char figure[] = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZ";
+    int64_t rest = marks->count++;
+
+    snprintf(marks->mark, sizeof marks->mark, "*R000000");
+    for (int k = MARKER_SIZE - 2; k > 1; k--, rest /= 36)
+        marks->mark[k] = figure[rest % 36];
+}
+
+/* @param[in] name  NULL: a continuation */
+static void put_line(FILE *file, dmig_marks *marks, const char *name,
+                     const char *fields, bool more)
+{
+    if (!name)
+        name = marks->numbered ? marks->mark : "*";
+    fprintf(file, "%-8s", name);
+    if (!marks->numbered || !more) {
+        fprintf(file, "%s\n", fields);
+        return;
+    }
+    next_mark(marks);
+    fprintf(file, "%-64s%s\n", fields, marks->mark);
+}
+
+/* The next term of column j from place k on: the diagonal, so that each dof
+   occurs, and all others but zeros; the order where there is none. */
+static int64_t next_term(const dmig_deck *deck, const dmig_matrix *m, int64_t j,
+                         int64_t k)
+{
+    while (k < deck->order && deck->at[k] != j &&
+           ritz_dense_col(&m->exact, j)[deck->at[k]] == 0.0)
+        k++;
+    return k;
+}
+
+static void put_column(FILE *file, const dmig_deck *deck, const dmig_matrix *m,
+                       int64_t col, dmig_marks *marks)
+{
+    const int64_t j = deck->at[col];
+    const ritz_dof of = deck->dof[j];
+    int64_t k = next_term(deck, m, j, m->symmetric ? col : 0);
+    char fields[4 * RITZ_LARGE_FIELD_SIZE], number[RITZ_LARGE_FIELD_SIZE];
+
+    snprintf(fields, sizeof fields, "%-16s%16" PRId64 "%16" PRId64,
+             m->kind->card, of.grid, of.component);
+    put_line(file, marks, "DMIG*", fields, true);
+    while (k < deck->order) {
+        const int64_t i = deck->at[k];
+
+        k = next_term(deck, m, j, k + 1);
+        ritz_large_field_print(ritz_dense_col(&m->exact, j)[i], number);
+        snprintf(fields, sizeof fields, "%16" PRId64 "%16" PRId64 "%16s",
+                 deck->dof[i].grid, deck->dof[i].component, number);
+        put_line(file, marks, NULL, fields, k < deck->order);
+    }
+}
+
+static void put_commands(FILE *file, const dmig_deck *deck)
+{
+    char text[2 * RITZ_NAME_SIZE];
+
+    put_comment(file, "case control:");
+    for (int64_t k = 0; k < deck->count; k++) {
+        const dmig_matrix *m = &deck->matrix[k];
+
+        snprintf(text, sizeof text, "  %s = %s",
+                 m->symmetric ? m->kind->symmetric : m->kind->square,
+                 m->kind->card);
+        put_comment(file, text);
+    }
+}
+
+static ritz_status put_deck(FILE *file, const void *what)
+{
+    const dmig_deck *deck = what;
+    const int64_t points = deck->order - deck->num_grids;
+    dmig_marks marks = {.numbered = deck->request->numbered};
+
+    put_certificate(file, deck);
+    for (int64_t k = 0; k < deck->report->count; k++)
+        put_comment(file, deck->report->line[k]);
+    put_commands(file, deck);
+    put_places(file, deck);
+    if (points == 1)
+        fprintf(file, "SPOINT  %8" PRId64 "\n", deck->first_point);
+    else if (points > 1)
+        fprintf(file, "SPOINT  %8" PRId64 "%8s%8" PRId64 "\n",
+                deck->first_point, "THRU", deck->first_point + points - 1);
+    for (int64_t k = 0; k < deck->count; k++) {
+        const dmig_matrix *m = &deck->matrix[k];
+
+        fprintf(file, "DMIG    %-8s%8d%8d%8d%8d\n", m->kind->card, 0,
+                m->symmetric ? SYMMETRIC : SQUARE, 2, 0);
+        for (int64_t col = 0; col < deck->order; col++)
+            put_column(file, deck, m, col, &marks);
+    }
+    return RITZ_OK;
+}
+
+static ritz_status write_deck(const ritz_export_object *object,
+                              const ritz_export_request *request,
+                              ritz_export_report *report)
+{
+    RITZ_OWN(dmig_deck)
+    deck = {.reduced = object->reduced, .request = request, .report = report};
+    dmig_audit audit = {0};
+
+    RITZ_CHECK(name_coordinates(&deck));
+    RITZ_CHECK(take_matrices(object, report, &deck));
+    RITZ_CHECK(audit_rounding(&deck, &audit));
+    RITZ_CHECK(say_coordinates(&deck, report));
+    for (int64_t k = 0; k < deck.count; k++)
+        RITZ_CHECK(say_matrix(&deck.matrix[k], report));
+    RITZ_CHECK(say_audit(&audit, report));
+    RITZ_CHECK(say_losses(&deck, report));
+    return ritz_sink_write(request->output, put_deck, &deck);
+}
+
+const ritz_exporter ritz_exporter_dmig = {
+    .name = "dmig",
+    .summary = "NASTRAN DMIG cards, with an audit of their digits",
+    .reference = "Nastran1986",
+    .kind = "reduced",
+    .takes = RITZ_EXPORT_REDUCED | RITZ_EXPORT_NUMBERED,
+    .write = write_deck,
+};
