@@ -3,6 +3,7 @@
 #include "base/search.h"
 #include "base/text.h"
 #include "base/tolerances.h"
+#include "model/modal.h"
 #include "model/squares.h"
 
 #include <ritz/export.h>
@@ -221,6 +222,42 @@ static ritz_status pick_modes(const ritz_pairs *pairs, bool squares,
     return RITZ_OK;
 }
 
+/*
+ * Number, frequency and damping ratio of the chosen modes, with Lambda = w^2,
+ *
+ *     zeta_k = (phi_k'D phi_k + c_k) / (2 w_k),
+ *
+ * c_k being what stated damping adds.
+ *
+ * @param[in] Delta  Phi'D Phi of the chosen modes; {0}: there is no D
+ * @param[in] text   stated damping
+ */
+static ritz_status rate_modes(const ritz_pairs *pairs, const mode_choice *which,
+                              const ritz_dense *Delta, const char *text,
+                              ritz_shapes *out)
+{
+    ritz_damping damping = {0};
+
+    RITZ_CHECK_IN("damping", ritz_damping_parse(text, &damping));
+    RITZ_CHECK_NEW(out->mode, which->count);
+    out->coupled = Delta->val != NULL;
+    for (int64_t j = 0; j < which->count; j++) {
+        ritz_shape_mode *mode = &out->mode[j];
+        int64_t k = which->at[j];
+        double lambda = k < pairs->num_rigid ? 0.0 : pairs->lambda[k];
+
+        mode->number = k + 1;
+        mode->hertz = ritz_eigen_hertz(lambda);
+        if (lambda <= 0.0)
+            continue;
+        mode->ratio = ritz_modal_rate(&damping, k - pairs->num_rigid, lambda);
+        if (Delta->val)
+            mode->ratio += ritz_dense_col(Delta, j)[j];
+        mode->ratio /= 2.0 * sqrt(lambda);
+    }
+    return RITZ_OK;
+}
+
 static body body_of_component(const ritz_component *component)
 {
     return (body){component->num_dofs, component->dof, &component->recovery,
@@ -233,19 +270,22 @@ ritz_status ritz_shapes_of_reduced(const ritz_reduced *reduced,
     const body whole = {reduced->num_dofs, reduced->dof, &reduced->recovery,
                         &reduced->grids, &reduced->elements};
     RITZ_OWN(ritz_shapes) shapes = {0};
-    RITZ_OWN(ritz_dampers) dampers = {0};
-    RITZ_OWN(ritz_dense) K = {0}, D = {0}, Phi = {0}, T = {0};
+    RITZ_OWN(ritz_structure) model = {0};
+    RITZ_OWN(ritz_dense) Delta = {0}, Phi = {0}, T = {0};
     RITZ_OWN(ritz_pairs) pairs = {0};
     RITZ_OWN(mode_choice) which = {0};
 
     RITZ_REFUSE_IF(!reduced->T.val || !reduced->dof, RITZ_ERR_ARGUMENT,
                    "it was reduced --without-basis, which holds the shapes");
-    RITZ_CHECK(ritz_dense_copy(&reduced->K, &K));
-    RITZ_CHECK(ritz_dampers_copy(&reduced->dampers, &dampers));
-    RITZ_CHECK(ritz_dampers_install(&dampers, &K, &D));
-    RITZ_CHECK(ritz_eigen_dense(&K, &reduced->M, &pairs));
+    RITZ_CHECK(ritz_structure_of_reduced(reduced, &model));
+    RITZ_CHECK(ritz_eigen_dense(&model.K, &model.M, &pairs));
     RITZ_CHECK(choose_modes(list, "mode", pairs.Phi.ncol, &which));
     RITZ_CHECK(pick_modes(&pairs, false, &which, &Phi, &shapes));
+    if (model.D.val)
+        RITZ_CHECK(ritz_dense_project(&model.D, &Phi, &Delta));
+    RITZ_CHECK(rate_modes(&pairs, &which, &Delta, reduced->damping, &shapes));
+    shapes.structural = reduced->K4.val != NULL;
+    memcpy(shapes.units, reduced->units, sizeof shapes.units);
     RITZ_CHECK(ritz_dense_mul(&reduced->T, &Phi, &T));
     RITZ_CHECK(place_shapes(&whole, &T, &shapes));
     RITZ_MOVE(*out, shapes);
@@ -416,7 +456,7 @@ ritz_status ritz_shapes_of_system(const ritz_system *system,
     const bool squares = ritz_measures_find(&at->errors, RITZ_NEGATIVE_SQUARES);
     RITZ_OWN(ritz_shapes) all = {0};
     RITZ_OWN(ritz_shapes_array) part = {.count = system->num_components};
-    RITZ_OWN(ritz_dense) Phi = {0};
+    RITZ_OWN(ritz_dense) Delta = {0}, Phi = {0};
     RITZ_OWN(ritz_pairs) pairs = {0};
     RITZ_OWN(mode_choice) which = {0};
 
@@ -428,6 +468,11 @@ ritz_status ritz_shapes_of_system(const ritz_system *system,
         RITZ_CHECK(ritz_pairs_by_size(&pairs));
     RITZ_CHECK(choose_modes(list, "mode", pairs.Phi.ncol, &which));
     RITZ_CHECK(pick_modes(&pairs, squares, &which, &Phi, &all));
+    if (at->D.val)
+        RITZ_CHECK(ritz_dense_project(&at->D, &Phi, &Delta));
+    RITZ_CHECK(rate_modes(&pairs, &which, &Delta, system->damping, &all));
+    all.structural = at->K4.val != NULL;
+    memcpy(all.units, system->units, sizeof all.units);
     RITZ_CHECK_NEW(part.at, part.count);
     for (int64_t c = 0; c < part.count; c++) {
         const ritz_reduced *b = bodies[c];
@@ -451,9 +496,8 @@ ritz_status ritz_shapes_of_component(const ritz_component *component,
     enum { USUAL = 10 };
     const body whole = body_of_component(component);
     RITZ_OWN(ritz_shapes) shapes = {0};
-    RITZ_OWN(ritz_dampers) dampers = {0};
     RITZ_OWN(ritz_sparse) K = {0}, D = {0};
-    RITZ_OWN(ritz_dense) Phi = {0};
+    RITZ_OWN(ritz_dense) Delta = {0}, Phi = {0};
     RITZ_OWN(ritz_pairs) pairs = {0};
     RITZ_OWN(mode_choice) which = {0};
     ritz_span span = {.modes = list ? 0 : USUAL};
@@ -463,15 +507,18 @@ ritz_status ritz_shapes_of_component(const ritz_component *component,
         RITZ_CHECK(walk_list(list, "mode", INT64_MAX, NULL, &span.modes));
     if (span.modes > component->num_dofs)
         span.modes = component->num_dofs;
-    RITZ_CHECK(ritz_sparse_copy(&component->K, &K));
-    RITZ_CHECK(ritz_dampers_copy(&component->dampers, &dampers));
-    RITZ_CHECK(ritz_dampers_install_sparse(&dampers, &K, &D));
+    RITZ_CHECK(ritz_structure_sparse(component, NULL, &K, &D));
     RITZ_CHECK(ritz_eigen_sparse(&K, &component->M, &span, &pairs));
     most = pairs.Phi.ncol;
     if (!list && most > pairs.num_rigid + span.modes)
         most = pairs.num_rigid + span.modes;
     RITZ_CHECK(choose_modes(list, "mode", most, &which));
     RITZ_CHECK(pick_modes(&pairs, false, &which, &Phi, &shapes));
+    if (D.colptr)
+        RITZ_CHECK(ritz_sparse_project(&D, &Phi, &Delta));
+    RITZ_CHECK(rate_modes(&pairs, &which, &Delta, component->damping, &shapes));
+    shapes.structural = component->K4.colptr != NULL;
+    memcpy(shapes.units, component->units, sizeof shapes.units);
     RITZ_CHECK(place_shapes(&whole, &Phi, &shapes));
     RITZ_MOVE(*out, shapes);
     return RITZ_OK;
@@ -522,7 +569,7 @@ ritz_status ritz_shapes_of_basis(const ritz_basis *basis,
 
 void ritz_shapes_free(ritz_shapes *shapes)
 {
-    RITZ_FREE(shapes->id, shapes->position, shapes->name);
+    RITZ_FREE(shapes->id, shapes->position, shapes->name, shapes->mode);
     ritz_elements_free(&shapes->cells);
     ritz_dense_free(&shapes->u);
     ritz_dense_free(&shapes->turn);

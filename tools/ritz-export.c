@@ -6,11 +6,11 @@ static void list_formats(void)
     for (const ritz_exporter *const *e = ritz_exporters; *e; e++)
         printf("%-16s %-9s %-52s [%s]\n", (*e)->name, (*e)->kind, (*e)->summary,
                (*e)->reference);
-    printf("\nreduced: a reduced component and, but for exudyn and dmig,\n"
+    printf("\nreduced: a reduced component and, but for dmig, exudyn,\n"
            "a system at a configuration (--at), either of which --states makes "
            "a state space,\nor a state space.\nshapes: modes of a component, "
            "of a reduced component, or of a system, whose bodies\n--component "
-           "names; columns of a basis.\n");
+           "names; but for uff, columns of a basis.\n");
 }
 
 int main(int argc, char **argv)
@@ -38,11 +38,11 @@ int main(int argc, char **argv)
                  "export even a model that is unstable or of unknown "
                  "errors"),
         CLI_TEXT("modes", &request->modes, "LIST",
-                 "shapes of these modes or columns, as 1-6,9 (vtu, xdmf) "
-                 "[all; 10 of a component]"),
+                 "shapes of these modes or columns, as 1-6,9 (uff, vtu, "
+                 "xdmf) [all; 10 of a component]"),
         CLI_LIST("component", &given.component, "[BODY=]FILE",
                  "component to which a basis belongs; reduced component of a "
-                 "body of a system (vtu, xdmf)"),
+                 "body of a system (uff, vtu, xdmf)"),
         CLI_ACTION("list", list_formats, "list formats and what they take"),
         {0},
     };

@@ -12,6 +12,14 @@
 
 #pragma GCC visibility push(default)
 
+/* A mode, scaled to phi'M phi = 1, that a shape shows. */
+typedef struct ritz_shape_mode {
+    int64_t number; /* from 1, rigid ones first */
+    double hertz;   /* 0 if rigid; negative where K is indefinite */
+    double ratio;   /* viscous, phi'D phi / (2 w), that of stated damping
+                       included; 0 where hertz is not above 0 */
+} ritz_shape_mode;
+
 typedef struct ritz_shapes {
     int64_t num_points;  /* grids with a position and a dof */
     int64_t *id;         /* num_points, ascending */
@@ -24,6 +32,10 @@ typedef struct ritz_shapes {
     ritz_dense u;          /* 3 num_points x count; an absent direction is 0 */
     ritz_dense turn;       /* the same of rotations; {0}: no grid has any */
     int64_t num_placeless; /* scalar points, and grids without a position */
+    ritz_shape_mode *mode; /* count; NULL: columns of a basis, no modes */
+    bool coupled; /* a damping matrix may couple modes, which no ratio says */
+    bool structural; /* there is structural damping, which no ratio includes */
+    char units[RITZ_NAME_SIZE]; /* "kg m s"; "" if not known */
 } ritz_shapes;
 
 /**
@@ -126,6 +138,7 @@ extern const ritz_exporter ritz_exporter_matlab;
 extern const ritz_exporter ritz_exporter_matrix_market;
 extern const ritz_exporter ritz_exporter_output4;
 extern const ritz_exporter ritz_exporter_tsv;
+extern const ritz_exporter ritz_exporter_uff;
 extern const ritz_exporter ritz_exporter_vtu;
 extern const ritz_exporter ritz_exporter_xdmf;
 

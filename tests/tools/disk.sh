@@ -36,7 +36,7 @@ fails_on_each_disk basis.h5 ritz-basis -q craig-bampton --up-to-hz 30 rotor.h5 \
 ritz-basis -q craig-bampton --up-to-hz 30 rotor.h5 -o basis.h5
 fails_on_each_disk reduced.h5 ritz-reduce -q rotor.h5 basis.h5 -o reduced.h5
 ritz-reduce -q rotor.h5 basis.h5 -o reduced.h5
-for format in output4 matlab exudyn xdmf vtu; do
+for format in output4 matlab exudyn xdmf vtu uff; do
     fails_on_each_disk "full.$format" \
         ritz-export -q --force --to $format reduced.h5 -o full.$format
 done

@@ -94,6 +94,31 @@ expect 1 "'x' is no part of a list of modes" ritz-export --to vtu --modes x \
     brick.h5 -o none.vtu
 expect 2 'takes a model whole' ritz-export --to output4 --modes 1 brick.h5 -o x
 
+# --- a universal file, by its columns --------------------------------------------------
+
+expect 0 'six digits of each number are kept' ritz-export --to uff \
+    --modes 2,13,121 brick.h5 -o brick.uff
+works 'a mode is a data set of frequency and motion' $python - <<'END'
+import numpy as np
+parts = map(str.splitlines, open("brick.uff").read().split("    -1\n")[1::2])
+sets = [(int(lines[0]), lines[1:]) for lines in parts]
+assert [n for n, _ in sets if n != 82] == [15, 55, 55, 55], sets
+modes = [lines for n, lines in sets if n == 55]
+still, own = np.zeros((20, 6)), np.zeros((20, 6))
+along = still.copy()
+along[0, 1] = 1
+own[2, :2] = 0.5 ** 0.5
+for lines, hertz, u in zip(modes, (2, 13, 121), (along, own, still)):
+    values = [float(lines[7][13 * k:13 * k + 13]) for k in range(4)]
+    assert abs(values[0] - hertz / 2 / np.pi) < 5e-6 * hertz, values
+    assert values[1:] == [1, 0, 0], values
+    motion = np.array([[float(line[13 * k:13 * k + 13]) for k in range(6)]
+                       for line in lines[9::2]])
+    assert np.abs(motion - u).max() < 1e-5, motion
+END
+expect 0 '1 points have no position and are left out' ritz-export --to uff \
+    brick.h5 --modes 1 -o one.uff
+
 # --- XDMF: the same, by corners ------------------------------------------------------
 
 expect 0 'numbers are in' ritz-export --to xdmf --modes 13,17 brick.h5 \
@@ -157,6 +182,8 @@ expect 0 'column' ritz-export --to vtu --modes 1,7 --component rotor.h5 basis.h5
 mesh 'columns are called by their kind' columns.vtu '
     any(n.startswith("column 1 constraint") for n in m.point_data)
     and any(n.startswith("column 7 normal, ") for n in m.point_data)'
+expect 1 'columns of a basis are no modes' ritz-export --to uff --modes 1,7 \
+    --component rotor.h5 basis.h5 -o none.uff
 expect 1 'name its component with --component' ritz-export --to vtu basis.h5 \
     -o none.vtu
 expect 2 'for shapes of a basis' ritz-export --to output4 --component rotor.h5 \
