@@ -122,9 +122,8 @@ static ritz_status list_edges(const ritz_shapes *s, trace_edge **out,
     trace_edge *edge = NULL;
 
     for (int64_t k = 0; k < s->cells.count; k++)
-        most +=
-            2 * find_edges(ritz_cell_shape_of(s->cells.kind[k])->linear)->count;
-    RITZ_CHECK_NEW(*out, most);
+        most += find_edges(ritz_cell_shape_of(s->cells.kind[k])->linear)->count;
+    RITZ_CHECK_NEW(*out, 2 * most);
     edge = *out;
     for (int64_t k = 0; k < s->cells.count; k++)
         put_cell(s, k, edge, count);

@@ -7,6 +7,8 @@ const ritz_exporter *const ritz_exporters[] = {
     &ritz_exporter_exudyn,
     &ritz_exporter_matlab,
     &ritz_exporter_matrix_market,
+    &ritz_exporter_openfast,
+    &ritz_exporter_openfast_4,
     &ritz_exporter_output4,
     &ritz_exporter_tsv,
     &ritz_exporter_uff,

@@ -6,7 +6,8 @@ static void list_formats(void)
     for (const ritz_exporter *const *e = ritz_exporters; *e; e++)
         printf("%-16s %-9s %-52s [%s]\n", (*e)->name, (*e)->kind, (*e)->summary,
                (*e)->reference);
-    printf("\nreduced: a reduced component and, but for dmig, exudyn,\n"
+    printf("\nreduced: a reduced component and, but for dmig, exudyn and "
+           "openfast,\n"
            "a system at a configuration (--at), either of which --states makes "
            "a state space,\nor a state space.\nshapes: modes of a component, "
            "of a reduced component, or of a system, whose bodies\n--component "

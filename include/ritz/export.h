@@ -136,6 +136,8 @@ extern const ritz_exporter ritz_exporter_dmig;
 extern const ritz_exporter ritz_exporter_exudyn;
 extern const ritz_exporter ritz_exporter_matlab;
 extern const ritz_exporter ritz_exporter_matrix_market;
+extern const ritz_exporter ritz_exporter_openfast;
+extern const ritz_exporter ritz_exporter_openfast_4;
 extern const ritz_exporter ritz_exporter_output4;
 extern const ritz_exporter ritz_exporter_tsv;
 extern const ritz_exporter ritz_exporter_uff;

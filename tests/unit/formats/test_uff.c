@@ -57,7 +57,7 @@ static void split_sets(uff_file *f)
             open = &f->set[f->count++];
         } else if (open->number == 0) {
             assert_int_equal(strlen(at), 6);
-            open->number = atoi(at);
+            open->number = (int)strtol(at, NULL, 10);
         } else {
             assert_true(open->count < 512);
             open->record[open->count++] = at;
@@ -97,10 +97,14 @@ static double field(const char *record, int skip, int width, int k)
     char *end = NULL;
     double value = 0.0;
 
-    assert_true((int)strlen(record) >= skip + width * (k + 1));
-    memcpy(text, record + skip + width * k, (size_t)width);
+    assert_non_null(record);
+    if (!record || (int)strlen(record) < skip + width * (k + 1))
+        fail_msg("'%s' has no field %d", record ? record : "", k + 1);
+    else
+        memcpy(text, record + skip + width * k, (size_t)width);
     for (char *at = text; *at; at++)
-        *at = *at == 'D' ? 'E' : *at;
+        if (*at == 'D')
+            *at = 'E';
     value = strtod(text, &end);
     assert_true(end == text + width);
     return value;

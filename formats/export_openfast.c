@@ -1,0 +1,353 @@
+/*
+ * A superelement for the module ExtPtfm of OpenFAST [OpenFAST2025]: the mass,
+ * stiffness and damping matrices of a Craig-Bampton component that one grid
+ * joins to the tower. The first six coordinates are the motion x_b of that
+ * grid along basic axes. With x_b = P q_c of the six constraint modes, P being
+ * orthogonal, and q_n of all other columns,
+ *
+ *     q_c = P' x_b,   [q_c; q_n] = V [x_b; q_n],   K := V'K V,
+ *
+ * and the same of M and D. If the axes of the grid are basic ones V only orders
+ * columns, and every bit is kept.
+ *
+ * Release 5 reads matrices behind the line that names them, and weights;
+ * releases 2.3 to 4 skip a line in between, and read loads over time.
+ * Lines that begin with "! " are comments to both, and tell how the component
+ * was made and what is known of its errors.
+ */
+#include "base/alloc.h"
+#include "base/tolerances.h"
+#include "formats/sink.h"
+#include "model/modal.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+enum { DIRECTIONS = 6 };
+
+typedef struct superelement {
+    const ritz_reduced *reduced;
+    const ritz_stamp *stamp; /* may be NULL */
+    bool weighs;             /* release 5, which reads weights */
+    int64_t grid;
+    ritz_dense K, M, D; /* D {0}: none */
+} superelement;
+
+static void superelement_free(superelement *s)
+{
+    ritz_dense_free(&s->K);
+    ritz_dense_free(&s->M);
+    ritz_dense_free(&s->D);
+}
+
+/* ---- the interface ------------------------------------------------------ */
+
+static bool is_constraint(const ritz_reduced *reduced, int64_t j)
+{
+    return reduced->columns.kind[j] == RITZ_COLUMN_CONSTRAINT;
+}
+
+/* Whether a port is all directions of one grid, which constraint modes alone
+   move. */
+static bool is_interface(const ritz_reduced *reduced, const ritz_port_map *port)
+{
+    if (port->count != DIRECTIONS)
+        return false;
+    for (int64_t i = 0; i < DIRECTIONS; i++)
+        if (port->dof[i].grid != port->dof[0].grid ||
+            port->dof[i].component != i + 1)
+            return false;
+    for (int64_t j = 0; j < reduced->K.ncol; j++)
+        if (!is_constraint(reduced, j) &&
+            ritz_dense_col_max(&port->map, j) != 0.0)
+            return false;
+    return true;
+}
+
+/* The interface, or what to do to have one. */
+static ritz_status find_interface(const ritz_reduced *reduced,
+                                  const ritz_port_map **out)
+{
+    int64_t constraints = 0;
+
+    for (int64_t j = 0; j < reduced->K.ncol; j++)
+        constraints += is_constraint(reduced, j);
+    for (int64_t k = 0; constraints == DIRECTIONS && k < reduced->num_ports;
+         k++)
+        if (is_interface(reduced, &reduced->port[k])) {
+            *out = &reduced->port[k];
+            return RITZ_OK;
+        }
+    return ritz_fail(
+        RITZ_ERR_ARGUMENT,
+        "OpenFAST holds a superelement by the six directions of one grid, and "
+        "this has %" PRId64 " constraint modes of %" PRId64 " ports: tie what "
+        "is joined to one grid by an RBE2 in the deck, import that grid as the "
+        "port, and reduce with ritz-basis craig-bampton --attach it alone",
+        constraints, reduced->num_ports);
+}
+
+/* V of the head; P must be orthogonal. */
+static ritz_status order_columns(const ritz_reduced *reduced,
+                                 const ritz_port_map *port, ritz_dense *V)
+{
+    const ritz_dense *P = &port->map;
+    int64_t next = DIRECTIONS;
+    RITZ_OWN(ritz_dense) square = {0};
+
+    RITZ_CHECK(ritz_dense_mul_nt(P, P, &square));
+    for (int64_t i = 0; i < DIRECTIONS; i++)
+        ritz_dense_col(&square, i)[i] -= 1.0;
+    RITZ_REFUSE_IF(ritz_dense_max(&square) > RITZ_NEGLIGIBLE, RITZ_ERR_ARGUMENT,
+                   "the constraint modes are not unit motions of grid %" PRId64
+                   " along its axes: reduce again by craig-bampton",
+                   port->dof[0].grid);
+    RITZ_CHECK(ritz_dense_new(P->ncol, P->ncol, V));
+    for (int64_t j = 0; j < P->ncol; j++)
+        if (is_constraint(reduced, j))
+            for (int64_t i = 0; i < DIRECTIONS; i++)
+                ritz_dense_col(V, i)[j] = ritz_dense_col(P, j)[i];
+        else
+            ritz_dense_col(V, next++)[j] = 1.0;
+    return RITZ_OK;
+}
+
+/* Units that OpenFAST takes, as ritz-import --units states them. */
+static const char wanted_units[] = "kg m s";
+
+static ritz_status check_units(const char *units)
+{
+    RITZ_REFUSE_IF(!*units, RITZ_ERR_ARGUMENT,
+                   "OpenFAST takes kg, m and s, and the units are not known: "
+                   "import with --units \"%s\" if they are these",
+                   wanted_units);
+    RITZ_REFUSE_IF(strcmp(units, wanted_units) != 0, RITZ_ERR_ARGUMENT,
+                   "OpenFAST takes kg, m and s, and the units are '%s': import "
+                   "matrices in these units, with --units \"%s\"",
+                   units, wanted_units);
+    return RITZ_OK;
+}
+
+static ritz_status fill_superelement(const ritz_reduced *reduced,
+                                     superelement *out)
+{
+    RITZ_OWN(ritz_structure) model = {0};
+    RITZ_OWN(ritz_dense) V = {0};
+    const ritz_port_map *port = NULL;
+    ritz_damping damping = {0};
+
+    RITZ_CHECK(check_units(reduced->units));
+    RITZ_CHECK(find_interface(reduced, &port));
+    RITZ_CHECK(order_columns(reduced, port, &V));
+    RITZ_CHECK(ritz_damping_parse(reduced->damping, &damping));
+    RITZ_CHECK(ritz_structure_of_reduced(reduced, &model));
+    RITZ_CHECK_IN("damping", ritz_modal_damping(&model, &damping, &model.D));
+    RITZ_CHECK(ritz_dense_congruence(&model.K, &V, &out->K));
+    RITZ_CHECK(ritz_dense_congruence(&model.M, &V, &out->M));
+    if (model.D.val)
+        RITZ_CHECK(ritz_dense_project(&model.D, &V, &out->D));
+    out->grid = port->dof[0].grid;
+    return RITZ_OK;
+}
+
+/* ---- its file ----------------------------------------------------------- */
+
+/* Text of others in a comment. */
+static void put_clean(FILE *file, const char *text)
+{
+    for (; *text; text++)
+        fputc((unsigned char)*text < ' ' ? '?' : *text, file);
+}
+
+static void print_errors(FILE *file, const ritz_reduced *reduced)
+{
+    bool measured = reduced->errors.count > 0;
+    const ritz_measures *known =
+        measured ? &reduced->errors : &reduced->estimates;
+
+    if (known->count == 0)
+        fputs("! errors: neither measured nor estimated\n", file);
+    for (int64_t k = 0; k < known->count; k++) {
+        const ritz_measure *m = &known->item[k];
+
+        fprintf(file, "! error, %s: ", measured ? "measured" : "estimated");
+        put_clean(file, m->name);
+        fprintf(file, " %.9g", m->value);
+        if (!isnan(m->limit))
+            fprintf(file, ", limit %.9g", m->limit);
+        if (*m->where)
+            fputs(", at ", file);
+        put_clean(file, m->where);
+        fputc('\n', file);
+    }
+}
+
+/* How it was made and what is known of it; the second line names the format. */
+static void print_origin(FILE *file, const superelement *s)
+{
+    const ritz_reduced *reduced = s->reduced;
+    int64_t inputs = s->stamp ? s->stamp->num_inputs : 0;
+
+    fputs("! superelement by ", file);
+    put_clean(file, reduced->origin.method);
+    if (*reduced->origin.options)
+        fputs(", ", file);
+    put_clean(file, reduced->origin.options);
+    fprintf(file, "; Ritz %s\n! Flex 5 Format\n", ritz_version());
+    fprintf(file,
+            "! kg m s; six motions of grid %" PRId64
+            " along basic axes, then %" PRId64 " modes\n"
+            "! damping of the matrix:%s ",
+            s->grid, s->K.ncol - DIRECTIONS,
+            s->D.val ? "" : " none, it is zero");
+    put_clean(file, reduced->damping);
+    fputc('\n', file);
+    print_errors(file, reduced);
+    for (int64_t k = 0; k < inputs; k++) {
+        fputs("! input ", file);
+        put_clean(file, s->stamp->input[k]);
+        fputc('\n', file);
+    }
+    if (s->stamp && s->stamp->command) {
+        fputs("! command: ", file);
+        put_clean(file, s->stamp->command);
+        fputc('\n', file);
+    }
+}
+
+static void put_zeros(FILE *file, int64_t count)
+{
+    for (int64_t k = 0; k < count; k++)
+        fputs(k > 0 ? " 0" : "0", file);
+    fputc('\n', file);
+}
+
+/* Rows of A; zeros if it has none. */
+static void print_matrix(FILE *file, const superelement *s, const char *title,
+                         const ritz_dense *A)
+{
+    int64_t n = s->K.ncol;
+
+    fprintf(file, "!%s\n", title);
+    if (!s->weighs)
+        fprintf(file, "!Dimension: %" PRId64 "\n", n);
+    for (int64_t i = 0; i < n; i++) {
+        if (!A->val) {
+            put_zeros(file, n);
+            continue;
+        }
+        for (int64_t j = 0; j < n; j++)
+            fprintf(file, "%s%.17g", j > 0 ? " " : "", ritz_dense_col(A, j)[i]);
+        fputc('\n', file);
+    }
+}
+
+/* Zero loads and wave elevation at the times 0 and 1, which also hold after. */
+static void print_loads(FILE *file, int64_t n)
+{
+    fprintf(file,
+            "!Loading and Wave Elevation (N, m)\n!Dimension: 1 time column - "
+            "%" PRId64 " force columns - 1 wave elevation column\n",
+            n);
+    for (int t = 0; t < 2; t++) {
+        fprintf(file, "%d ", t);
+        put_zeros(file, n + 1);
+    }
+}
+
+static ritz_status print_file(FILE *file, const void *what)
+{
+    const superelement *s = what;
+    int64_t n = s->K.ncol;
+
+    print_origin(file, s);
+    fprintf(file, "!Dimension: %" PRId64 "\n", n);
+    if (!s->weighs)
+        fputs("!Time increment in simulation: 1\n"
+              "!Total simulation time in file: 1\n",
+              file);
+    print_matrix(file, s, "Mass Matrix (kg, m)", &s->M);
+    print_matrix(file, s, "Stiffness Matrix (N, m)", &s->K);
+    print_matrix(file, s, "Damping Matrix (N, m, s)", &s->D);
+    if (s->weighs) {
+        fputs("!Weight constant (N, m)\n", file);
+        put_zeros(file, n);
+        print_matrix(file, s, "Weight stiffness (N, m)", &(ritz_dense){0});
+    } else {
+        print_loads(file, n);
+    }
+    return RITZ_OK;
+}
+
+/* ---- exporters ---------------------------------------------------------- */
+
+static ritz_status say_losses(const superelement *s, ritz_export_report *report)
+{
+    const ritz_reduced *reduced = s->reduced;
+
+    if (*reduced->damping)
+        RITZ_CHECK(ritz_export_say(report, "damping '%.200s' is in the matrix",
+                                   reduced->damping));
+    if (reduced->K4.val)
+        RITZ_CHECK(ritz_export_say(report, "structural damping left out"));
+    RITZ_CHECK(ritz_export_say(
+        report, s->weighs ? "self-weight is left out: its vector and its "
+                            "stiffness are zero"
+                          : "loads and wave elevation are zero at all times"));
+    RITZ_CHECK(ritz_export_say(
+        report,
+        "grid %lld is to be the platform reference point of ElastoDyn, "
+        "and basic axis z the vertical",
+        (long long)s->grid));
+    return ritz_export_say(report, "inputs, outputs and shapes are left out: "
+                                   "the file has no place for them");
+}
+
+static ritz_status write_superelement(const ritz_export_object *object,
+                                      const ritz_export_request *request,
+                                      bool weighs, ritz_export_report *report)
+{
+    RITZ_OWN(superelement) s = {.weighs = weighs};
+
+    s.reduced = object->reduced;
+    s.stamp = request->stamp;
+    RITZ_CHECK(fill_superelement(object->reduced, &s));
+    RITZ_CHECK(ritz_sink_write(request->output, print_file, &s));
+    RITZ_CHECK(ritz_export_say(
+        report,
+        "six directions of grid %lld and %lld modes; matrices with all digits",
+        (long long)s.grid, (long long)s.K.ncol - DIRECTIONS));
+    return say_losses(&s, report);
+}
+
+static ritz_status write_weighing(const ritz_export_object *object,
+                                  const ritz_export_request *request,
+                                  ritz_export_report *report)
+{
+    return write_superelement(object, request, true, report);
+}
+
+static ritz_status write_loaded(const ritz_export_object *object,
+                                const ritz_export_request *request,
+                                ritz_export_report *report)
+{
+    return write_superelement(object, request, false, report);
+}
+
+const ritz_exporter ritz_exporter_openfast = {
+    .name = "openfast",
+    .summary = "a superelement for OpenFAST 5 (ExtPtfm)",
+    .reference = "OpenFAST2025",
+    .kind = "reduced",
+    .takes = RITZ_EXPORT_REDUCED,
+    .write = write_weighing,
+};
+
+const ritz_exporter ritz_exporter_openfast_4 = {
+    .name = "openfast-4",
+    .summary = "a superelement for OpenFAST 2.3 to 4 (FlexASCII)",
+    .reference = "OpenFAST2025",
+    .kind = "reduced",
+    .takes = RITZ_EXPORT_REDUCED,
+    .write = write_loaded,
+};
