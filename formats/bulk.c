@@ -549,7 +549,7 @@ static ritz_status note_imposed(const ritz_cards *cards,
                             "zero: imposed motion is no part of a component, "
                             "use a port and an input",
                             range->set, range->from);
-    return ritz_bulk_keep_sentence(&out->imposed);
+    return ritz_deck_keep_sentence(&out->imposed);
 }
 
 /* Keep the SPC cards that act, and add what GRID cards hold fixed. */

@@ -96,9 +96,6 @@ const ritz_bulk_grid *ritz_bulk_find_grid(const ritz_bulk_cards *all,
  * counts once. @cost O(n log n) */
 ritz_status ritz_bulk_place_grids(ritz_bulk_cards *all, ritz_grids *out);
 
-/** Copy the sentence of the latest failure. */
-ritz_status ritz_bulk_keep_sentence(char **out);
-
 /**
  * The equations of all constraint elements that act.
  *

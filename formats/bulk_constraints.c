@@ -34,14 +34,6 @@ typedef struct ritz_bulk_tying {
 
 enum { ALL_SIX = 0x7e }; /* bits of directions 1 to 6 */
 
-ritz_status ritz_bulk_keep_sentence(char **out)
-{
-    const char *said = ritz_error_message();
-
-    RITZ_CHECK_COPY(*out, said, (int64_t)strlen(said) + 1);
-    return RITZ_OK;
-}
-
 /* Fail with file, line and the name of the element before the sentence. */
 [[gnu::format(printf, 2, 3)]] static ritz_status
 tying_refuse(const ritz_bulk_tying *it, const char *format, ...)
@@ -562,19 +554,6 @@ static ritz_status tie_element(const ritz_bulk_tying *it)
         it, "is not understood: MPC, RBAR, RBE1, RBE2, RBE3 and RTRPLT are");
 }
 
-static ritz_status copy_paths(const ritz_cards *cards, ritz_equations *out)
-{
-    RITZ_CHECK_NEW(out->file, cards->num_files);
-    for (; out->num_files < cards->num_files; out->num_files++) {
-        const char *path = cards->file[out->num_files].path;
-
-        if (path)
-            RITZ_CHECK_COPY(out->file[out->num_files], path,
-                            (int64_t)strlen(path) + 1);
-    }
-    return RITZ_OK;
-}
-
 static ritz_status tie_card(const ritz_bulk_cards *all, int64_t k,
                             ritz_deck *built)
 {
@@ -601,12 +580,13 @@ ritz_status ritz_bulk_list_equations(const ritz_bulk_cards *all,
 {
     if (built->num_constraints == 0)
         return RITZ_OK;
-    RITZ_CHECK(copy_paths(&all->cards, &built->equations));
+    RITZ_CHECK(ritz_deck_paths(&all->cards.files, &built->equations.num_files,
+                               &built->equations.file));
     for (int64_t k = 0; k < built->num_constraints; k++) {
         ritz_status status = tie_card(all, k, built);
 
         if (status == RITZ_ERR_FORMAT)
-            return ritz_bulk_keep_sentence(&built->equations.refused);
+            return ritz_deck_keep_sentence(&built->equations.refused);
         RITZ_CHECK(status);
     }
     return RITZ_OK;

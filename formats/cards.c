@@ -1,48 +1,31 @@
 /*
  * Cards of NASTRAN bulk data. A deck is scanned into lines, without executive
- * and case control, comments, blank lines and what follows ENDDATA. A file that
- * INCLUDE names is gone through in place; its name is relative to the folder of
- * the file that names it. Then lines are joined to cards: a line continues
+ * and case control, comments, blank lines and what follows ENDDATA, with the
+ * files that INCLUDE names. Then lines are joined to cards: a line continues
  * another by the markers in the tenth field of the one and the first field of
  * the other; the line above is looked at first, then the whole deck.
  */
 #include "formats/cards.h"
 #include "base/alloc.h"
 #include "base/search.h"
-#include "base/text.h"
 
 #include <ritz/base.h>
 
-#include <errno.h>
 #include <inttypes.h>
-#include <stdio.h>
-#include <sys/stat.h>
 
-enum { RITZ_CARDS_DEEPEST = 16 };
-
-/* A file that is being gone through. */
-typedef struct card_text {
-    ritz_lines text;
-    int64_t file;
-    char *folder; /* to which its INCLUDEs are relative; NULL: not followed */
-} card_text;
-
-/* The file that is read, on top of those whose INCLUDE led to it. */
+/* The lines of a deck on their way to its cards. */
 typedef struct ritz_scanner {
     ritz_cards *cards;
-    const char *home; /* folder of the deck; NULL: INCLUDE is not followed */
-    bool ended;       /* ENDDATA was read */
-    int depth;
-    card_text open[RITZ_CARDS_DEEPEST + 1];
+    bool ended; /* ENDDATA was read */
+    ritz_deck_reading reading;
 } ritz_scanner;
 
 static void ritz_scanner_free(ritz_scanner *scan)
 {
-    while (scan->depth > 0)
-        free(scan->open[--scan->depth].folder);
+    ritz_deck_reading_free(&scan->reading);
 }
 
-/* ---- files and their control sections ----------------------------------- */
+/* ---- control sections --------------------------------------------------- */
 
 /* SPC = 5 in the case control: remember which set is meant. */
 static ritz_status take_selection(const ritz_lines *text, const char *word,
@@ -101,21 +84,7 @@ static ritz_status skip_control(const char *path, ritz_lines *text,
     return RITZ_OK;
 }
 
-/* Append a file; its text belongs to the deck then, unless the call fails. */
-static ritz_status add_file(ritz_cards *cards, const char *path,
-                            ritz_cards_file file)
-{
-    file.path = NULL;
-    RITZ_CHECK_ROOM(cards->file, cards->num_files, cards->files_room);
-    if (path)
-        RITZ_CHECK_COPY(file.path, path, (int64_t)strlen(path) + 1);
-    cards->file[cards->num_files++] = file;
-    return RITZ_OK;
-}
-
 /* ---- INCLUDE ------------------------------------------------------------ */
-
-enum { MOST_FILES = 10000 };
 
 /* The name in 'quotes', perhaps over several lines, or the rest of the line. */
 static ritz_status include_name(ritz_lines *text, const char *at, char *name,
@@ -156,124 +125,30 @@ static ritz_status include_name(ritz_lines *text, const char *at, char *name,
     return RITZ_OK;
 }
 
-/* folder/name, or name alone if it begins at the root. */
-static ritz_status join_path(const char *folder, const char *name, char **out)
+static ritz_status include_file(ritz_scanner *scan, const char *name)
 {
-    size_t length = strlen(folder) + strlen(name) + 2;
-    char *path = NULL;
+    const ritz_deck_files *files = &scan->cards->files;
+    ritz_deck_text *top = ritz_deck_top(&scan->reading);
 
-    RITZ_CHECK_NEW(path, (int64_t)length);
-    if (*name == '/' || !*folder || strcmp(folder, ".") == 0)
-        snprintf(path, length, "%s", name);
-    else
-        snprintf(path, length, "%s/%s", folder, name);
-    *out = path;
-    return RITZ_OK;
-}
-
-static const ritz_cards_file *file_of(const ritz_scanner *scan, int level)
-{
-    return &scan->cards->file[scan->open[level].file];
-}
-
-static void identify_file(const struct stat *there, ritz_cards_file *file)
-{
-    file->known = true;
-    file->device = (uint64_t)there->st_dev;
-    file->inode = (uint64_t)there->st_ino;
-}
-
-static bool same_file(const ritz_cards_file *a, const ritz_cards_file *b)
-{
-    return a->known && b->known && a->device == b->device &&
-           a->inode == b->inode;
-}
-
-/* Whether a file may be included: it is not open, and was included few times.
- * *earlier: an earlier inclusion, whose text can be used; NULL: none. */
-static ritz_status check_repeats(const ritz_scanner *scan, const char *path,
-                                 const ritz_cards_file *file,
-                                 const ritz_cards_file **earlier)
-{
-    const ritz_cards *cards = scan->cards;
-    int64_t times = 0;
-
-    *earlier = NULL;
-    for (int k = 0; k < scan->depth; k++)
-        RITZ_REFUSE_IF(same_file(file_of(scan, k), file), RITZ_ERR_FORMAT,
-                       "'%s' includes itself", path);
-    for (int64_t k = 0; k < cards->num_files; k++) {
-        if (!same_file(&cards->file[k], file))
-            continue;
-        times++;
-        if (cards->file[k].text)
-            *earlier = &cards->file[k];
+    if (!top->folder) {
+        scan->cards->num_skipped++;
+        return RITZ_OK;
     }
-    RITZ_REFUSE_IF(times >= RITZ_CARDS_REPEATED, RITZ_ERR_FORMAT,
-                   "'%s' is included more than %d times", path,
-                   RITZ_CARDS_REPEATED);
-    return RITZ_OK;
-}
-
-/*
- * Continue with an included file. Decks may come from strangers: the name must
- * be that of a regular file, because a device may have no end and a pipe no
- * writer. A file that is included again is not read again.
- */
-static ritz_status include_file(ritz_scanner *scan, const char *path)
-{
-    card_text new = {.file = scan->cards->num_files};
-    ritz_cards_file file = {.outside = !ritz_path_within(path, scan->home)};
-    const ritz_cards_file *earlier = NULL;
-    const char *text = NULL;
-    RITZ_OWN_ARRAY char *bytes = NULL;
-    struct stat there;
-
-    RITZ_REFUSE_IF(stat(path, &there) != 0, RITZ_ERR_FILE,
-                   "cannot open '%s': %s", path, strerror(errno));
-    RITZ_REFUSE_IF(!S_ISREG(there.st_mode), RITZ_ERR_FILE,
-                   "'%s' is not a regular file", path);
-    identify_file(&there, &file);
-    RITZ_CHECK(check_repeats(scan, path, &file, &earlier));
-    RITZ_REFUSE_IF(scan->depth > RITZ_CARDS_DEEPEST, RITZ_ERR_FORMAT,
-                   "INCLUDE is more than %d files deep", RITZ_CARDS_DEEPEST);
-    RITZ_REFUSE_IF(scan->cards->num_files >= MOST_FILES, RITZ_ERR_FORMAT,
-                   "INCLUDE reads more than %d files", MOST_FILES);
-    if (!earlier)
-        RITZ_CHECK(ritz_text_read(path, &bytes));
-    text = earlier ? earlier->text : bytes;
-    new.text = (ritz_lines){.at = text, .end = text + strlen(text)};
-    file.text = bytes;
-    RITZ_CHECK(add_file(scan->cards, path, file));
-    bytes = NULL;
-    RITZ_CHECK(skip_control(path, &new.text, scan->cards));
-    RITZ_CHECK(ritz_path_folder(path, &new.folder));
-    scan->open[scan->depth++] = new;
-    return RITZ_OK;
+    RITZ_CHECK(ritz_deck_include(&scan->reading, name));
+    top = ritz_deck_top(&scan->reading);
+    return skip_control(files->file[top->file].path, &top->text, scan->cards);
 }
 
 /* Follow an INCLUDE; @p rest is what stands behind the word. */
 static ritz_status follow_include(ritz_scanner *scan, const char *rest)
 {
-    enum { LONGEST = 4096 };
-    card_text *top = &scan->open[scan->depth - 1];
-    const char *including = file_of(scan, scan->depth - 1)->path;
-    int64_t number = top->text.number;
-    char name[LONGEST] = "";
-    char where[LONGEST + 40] = "";
-    RITZ_OWN_ARRAY char *path = NULL;
+    char name[RITZ_DECK_LONGEST] = "";
+    char where[RITZ_DECK_PLACE_SIZE];
+    ritz_deck_text *top = ritz_deck_top(&scan->reading);
 
-    if (including)
-        snprintf(where, sizeof where, "'%s', line %" PRId64, including, number);
-    else
-        snprintf(where, sizeof where, "line %" PRId64, number);
+    ritz_deck_place(&scan->reading, where);
     RITZ_CHECK_IN(where, include_name(&top->text, rest, name, sizeof name));
-    if (!top->folder) {
-        scan->cards->num_skipped++;
-        return RITZ_OK;
-    }
-    RITZ_CHECK(join_path(top->folder, name, &path));
-    RITZ_CHECK_IN(where, include_file(scan, path));
+    RITZ_CHECK_IN(where, include_file(scan, name));
     return RITZ_OK;
 }
 
@@ -298,7 +173,7 @@ static ritz_status add_line(ritz_cards *cards, int64_t file,
 
 static ritz_status take_line(ritz_scanner *scan)
 {
-    const card_text *top = &scan->open[scan->depth - 1];
+    const ritz_deck_text *top = ritz_deck_top(&scan->reading);
     const char *line = top->text.line;
     const char *rest = NULL;
     int64_t length = top->text.line_end - line;
@@ -319,26 +194,15 @@ static ritz_status take_line(ritz_scanner *scan)
 
 /* Keep the lines of a file, and of what it includes, up to ENDDATA. */
 static ritz_status scan_text(const char *path, const char *folder,
-                             ritz_lines text, ritz_cards *cards)
+                             const char *text, int64_t size, ritz_cards *cards)
 {
-    RITZ_OWN(ritz_scanner) scan = {.cards = cards, .home = folder};
-    ritz_cards_file file = {0};
-    struct stat there;
-    char *copy = NULL;
+    RITZ_OWN(ritz_scanner)
+    scan = {.cards = cards, .reading = {.files = &cards->files}};
 
-    if (path && folder && stat(path, &there) == 0)
-        identify_file(&there, &file);
-    RITZ_CHECK(add_file(cards, path, file));
-    RITZ_CHECK(skip_control(path, &text, cards));
-    if (folder)
-        RITZ_CHECK_COPY(copy, folder, (int64_t)strlen(folder) + 1);
-    scan.open[scan.depth++] = (card_text){.text = text, .folder = copy};
-    while (scan.depth > 0 && !scan.ended) {
-        if (ritz_lines_next(&scan.open[scan.depth - 1].text))
-            RITZ_CHECK(take_line(&scan));
-        else
-            free(scan.open[--scan.depth].folder);
-    }
+    RITZ_CHECK(ritz_deck_begin(&scan.reading, path, text, size, folder));
+    RITZ_CHECK(skip_control(path, &ritz_deck_top(&scan.reading)->text, cards));
+    while (!scan.ended && ritz_deck_next_line(&scan.reading))
+        RITZ_CHECK(take_line(&scan));
     return RITZ_OK;
 }
 
@@ -523,9 +387,8 @@ ritz_status ritz_cards_parse(const char *path, const char *text, int64_t size,
 {
     RITZ_OWN(ritz_cards) cards = {0};
     RITZ_OWN(strays) list = {0};
-    ritz_lines whole = {.at = text, .end = text + size};
 
-    RITZ_CHECK(scan_text(path, folder, whole, &cards));
+    RITZ_CHECK(scan_text(path, folder, text, size, &cards));
     RITZ_CHECK(join_neighbours(&cards, &list));
     RITZ_CHECK(join_strays(&cards, &list));
     RITZ_CHECK(check_reach(&cards));
@@ -535,10 +398,8 @@ ritz_status ritz_cards_parse(const char *path, const char *text, int64_t size,
 
 void ritz_cards_free(ritz_cards *cards)
 {
-    for (int64_t k = 0; k < cards->num_files; k++) {
-        RITZ_FREE(cards->file[k].path, cards->file[k].text);
-    }
-    RITZ_FREE(cards->file, cards->line, cards->entry, cards->selected[0],
+    ritz_deck_files_free(&cards->files);
+    RITZ_FREE(cards->line, cards->entry, cards->selected[0],
               cards->selected[1]);
     *cards = (ritz_cards){0};
 }

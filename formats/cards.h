@@ -11,6 +11,7 @@
 #include "base/alloc.h"
 
 #include "formats/decimal.h"
+#include "formats/deck_files.h"
 
 #include <ritz/base.h>
 
@@ -21,29 +22,18 @@
 #include <string.h>
 
 enum {
-    RITZ_CARDS_REPEATED = 16,  /* times that a deck may include a file */
     RITZ_CARD_NAME_SIZE = 12,  /* a name has up to 8 letters */
     RITZ_CARD_FIELD_SIZE = 36, /* a free field may be wider than 16 */
 };
 
 /* A line of bulk data that is neither blank nor a comment. */
 typedef struct ritz_line {
-    const char *text; /* in a ritz_cards_file, without comment and line end */
+    const char *text; /* in a ritz_deck_file, without comment and line end */
     int32_t length;
-    int32_t file;   /* index of the ritz_cards_file */
+    int32_t file;   /* index of the ritz_deck_file */
     int64_t number; /* from 1 */
     int64_t next;   /* the line that continues it, -1 if none does */
 } ritz_line;
-
-typedef struct ritz_cards_file {
-    char *path;
-    char *text; /* NULL if borrowed, from an earlier inclusion too */
-    bool known; /* device and inode are known */
-    /* outside of the deck's folder: sentences do not quote it */
-    bool outside;
-    uint64_t device; /* device and inode are the same under all names */
-    uint64_t inode;
-} ritz_cards_file;
 
 /* Where a card is and what it is called, "GRID" for GRID*. */
 typedef struct ritz_entry {
@@ -52,11 +42,10 @@ typedef struct ritz_entry {
 } ritz_entry;
 
 typedef struct ritz_cards {
-    int64_t num_files;
+    ritz_deck_files files;
     int64_t num_lines;
     int64_t num_entries;
-    int64_t files_room, lines_room, entries_room;
-    ritz_cards_file *file;
+    int64_t lines_room, entries_room;
     ritz_line *line;
     ritz_entry *entry;   /* in the order of the file */
     int64_t num_skipped; /* INCLUDE lines, where these are not followed */
@@ -92,10 +81,8 @@ typedef struct ritz_card {
  * @param[in] path    for messages; NULL: they begin with the line
  * @param[in] text    borrowed as long as the deck lives
  * @param[in] folder  to which INCLUDE is relative; NULL: it is counted only
- * @return RITZ_ERR_FORMAT if a continuation has no card, or INCLUDE goes in a
- *         circle or too deep, or names a file more than RITZ_CARDS_REPEATED
- *         times; RITZ_ERR_FILE if an included file is missing, or is a folder,
- *         a device or a pipe
+ * @return RITZ_ERR_FORMAT if a continuation has no card, or as
+ *         ritz_deck_include(); RITZ_ERR_FILE as that
  * @cost   O(size), and O(n log n) in continuations that are out of order
  */
 ritz_status ritz_cards_parse(const char *path, const char *text, int64_t size,
@@ -122,9 +109,7 @@ bool ritz_card_number(const char *text, double *out);
 /** Significant digits that a number is written with; 0 for a zero. */
 int64_t ritz_card_digits(const char *text);
 
-/** Fail, with file and line before the sentence. Quotes from a file outside of
- * the deck's folder are left out: they could show the author of a deck what
- * only the user of Ritz may read. */
+/** Fail as ritz_deck_refuse(), about a line of the deck. */
 [[gnu::format(printf, 3, 4)]] ritz_status
 ritz_cards_refuse(const ritz_cards *cards, int64_t line, const char *format,
                   ...);

@@ -13,10 +13,8 @@
  */
 #include "formats/cards.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
-#include <stdio.h>
 #include <strings.h>
 
 ritz_piece ritz_piece_trim(ritz_piece piece)
@@ -172,40 +170,18 @@ int ritz_cards_compare_name(const void *name, const void *row)
     return strcmp(name, *one);
 }
 
-/* Remove from a sentence everything between the first quote and the last one,
- * since a quotation may contain quotes; remove all after the first one if the
- * sentence was cut off. */
-static void hide_quotes(char *sentence, size_t size)
-{
-    char *first = strchr(sentence, '\'');
-    const char *last = strrchr(sentence, '\'');
-    char end[400] = "";
-
-    if (!first)
-        return;
-    if (last > first)
-        snprintf(end, sizeof end, "...%s", last);
-    snprintf(first + 1, size - (size_t)(first + 1 - sentence), "%s", end);
-}
-
 ritz_status ritz_cards_refuse(const ritz_cards *cards, int64_t line,
                               const char *format, ...)
 {
     const ritz_line *at = &cards->line[line];
-    const char *path = cards->file[at->file].path;
-    char sentence[400];
+    ritz_status status = RITZ_OK;
     va_list args;
 
     va_start(args, format);
-    vsnprintf(sentence, sizeof sentence, format, args);
+    status =
+        ritz_deck_refuse(&cards->files, at->file, at->number, format, args);
     va_end(args);
-    if (cards->file[at->file].outside)
-        hide_quotes(sentence, sizeof sentence);
-    if (path)
-        return ritz_fail(RITZ_ERR_FORMAT, "'%s', line %" PRId64 ": %s", path,
-                         at->number, sentence);
-    return ritz_fail(RITZ_ERR_FORMAT, "line %" PRId64 ": %s", at->number,
-                     sentence);
+    return status;
 }
 
 const char *ritz_card_text(const ritz_card *card, int64_t k)

@@ -342,7 +342,7 @@ static void a_file_is_included_sixteen_times(void **state)
 
     (void)state;
     folder_write("one.blk", "GRID,2\n");
-    for (int k = 0; k < RITZ_CARDS_REPEATED; k++)
+    for (int k = 0; k < RITZ_DECK_REPEATED; k++)
         used += (size_t)snprintf(text + used, sizeof text - used,
                                  "INCLUDE '%sone.blk'\n", k % 2 ? "./" : "");
     folder_write("top.dat", text);
