@@ -129,22 +129,6 @@ static bool is_matrix_input(const char *bytes, int64_t size)
     return is_real(at, text.line_end);
 }
 
-/* The first line that is no comment is a keyword line. */
-static bool is_abaqus_deck(const char *bytes, int64_t size)
-{
-    static const char *const comment[] = {"**", NULL};
-    static const char *const word[] = {
-        "*Heading", "*Node",         "*Element",  "*Part",      "*Assembly",
-        "*Include", "*Material",     "*Preprint", "*Parameter", "*Nset",
-        "*Elset",   "*User Element", "*Matrix",   "*Model",     NULL};
-    ritz_lines text = lines_of(bytes, size);
-
-    while (next_line(&text))
-        if (!begins(text.line, text.line_end, comment))
-            return begins(text.line, text.line_end, word);
-    return false;
-}
-
 /* The header is a record of 100 whole numbers. The first of them is the kind of
    file: 2 to 16, or 45. */
 static bool is_ansys_binary(const char *bytes, int64_t size)
@@ -178,9 +162,6 @@ const ritz_unread ritz_unread_formats[] = {
     {"a list of dofs of CalculiX", "it is for --dofs", is_calculix_dofs},
     {"a matrix of Abaqus as it reads matrices",
      "let Abaqus write it with FORMAT=COORDINATE", is_matrix_input},
-    {"an input file of Abaqus or CalculiX",
-     "let the program write matrices, and write the nodes as GRID",
-     is_abaqus_deck},
     {"a binary file of ANSYS", "let ANSYS export matrices as Matrix Market",
      is_ansys_binary},
     {"an input file or a list of ANSYS",

@@ -25,7 +25,7 @@ int main(int argc, char **argv)
         CLI_LIST("geometric-stiffness", &given.load, "F@LOAD",
                  "K_g for a unit of LOAD: stored, no tool uses it yet"),
         CLI_TEXT("bulk", &it->bulk, "F",
-                 "NASTRAN bulk data: grids, frames, sets"),
+                 "deck of NASTRAN, Abaqus or CalculiX: grids, frames, sets"),
         CLI_TEXT("dofs", &it->dofs, "F",
                  "names of rows: GRID COMP or GRID.COMP a line, 0: a point"),
         CLI_TEXT("rows", &it->rows, "COMPS",

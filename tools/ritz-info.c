@@ -1,4 +1,4 @@
-/* ritz-info - what is in a container, a matrix file or a bulk data deck. */
+/* ritz-info - what is in a container, a matrix file or a deck. */
 #include "print/print.h"
 
 #include <stdio.h>

@@ -231,8 +231,10 @@ typedef struct ritz_deck {
                                            it is not all of that */
     ritz_elements elements; /* for pictures; grids need not be there */
     int64_t num_strange;    /* elements whose grids are not understood */
-    char *imposed; /* sentence about a support that moves its dof; NULL: none
+    char *imposed;    /* sentence about a support that moves its dof; NULL: none
                       does */
+    char *unnumbered; /* why `dof` may not be the rows of matrices, which must
+                         be named then; NULL: it is */
 } ritz_deck;
 
 typedef struct ritz_deck_format {
@@ -258,6 +260,7 @@ typedef struct ritz_deck_format {
 /** All formats of decks, ended by NULL; the first that recognises a file reads
  * it. */
 extern const ritz_deck_format *const ritz_decks[];
+extern const ritz_deck_format ritz_deck_inp;
 extern const ritz_deck_format ritz_deck_nastran;
 
 /** The format of these bytes; NULL if no format knows them. */

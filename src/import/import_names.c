@@ -239,6 +239,9 @@ static ritz_status list_deck_names(const ritz_deck *deck, int64_t n,
     ritz_row_names *list = lists.list;
     int chosen = -1;
 
+    RITZ_REFUSE_IF(deck->unnumbered, RITZ_ERR_FORMAT,
+                   "%s: --dofs must name the rows of '%s'", deck->unnumbered,
+                   spec);
     RITZ_CHECK(list_all(deck, &list[ALL]));
     RITZ_CHECK(list_sets(deck, &list[SETS]));
     for (int k = FREE; k < KINDS; k++)

@@ -179,6 +179,21 @@ DECK = {
               "CORD2S,5,4,1.,0.,0.,0.,1.,0.,+\n+,0.,0.,1.\n"
               "GRID,1,,0.,0.,0.\nGRID,2,,0.,0.,1.\nGRID,3,,1.,0.,0.\n"
               "GRID,4,1,1.,1.,1.,5\nINCLUDE 'more.bdf'\nENDDATA\n",
+    "inp": "** a comment\n*HEADING\ntext\n*NODE, NSET=ALL\n1, 0., 0., 0.\n"
+           "2, 1.5\n3, 1., 1.\n4, , , 1.0D0\n"
+           "*ELEMENT, TYPE=C3D4, ELSET=E\n1, 1, 2,\n 3, 4\n"
+           "*NSET, NSET=EVEN, GENERATE\n2, 4, 2\n*NSET, NSET=BOTH\n1, EVEN\n"
+           "*EQUATION\n2\n2, 1, 1., 3, 1, -0.5\n*BOUNDARY\nBOTH, 1, 2\n"
+           "1, PINNED\n*INCLUDE, INPUT=more.inp\n*STEP\n"
+           "*FREQUENCY, SOLVER=MATRIXSTORAGE\n2\n*END STEP\n",
+    "inp-part": "*Part, name=P\n*End Part\n*Assembly, name=A\n"
+                "*Instance, name=P-1, part=P\n0., 0., 5.\n*Node\n1, 1., 2.\n"
+                "7, 3., 4.\n8, 5.\n*Element, type=B32\n1, 1, 7, 8\n"
+                "*Element, type=X9\n2, 1,\n7\n*Nset, nset=\"s, t\"\n7\n"
+                "*End Instance\n*Nset, nset=R, instance=P-1\n1\n*TIE\na, b\n"
+                "*End Assembly\n*Boundary\nP-1.1, 1, 3, 0.1\n"
+                "P-1.\"s, t\", ENCASTRE\n"
+                "*Step\n*MATRIX GENERATE, STIFFNESS,\nMASS\n*End Step\n",
 }
 
 # --- options of ritz-import, and their files ------------------------------------

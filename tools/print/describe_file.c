@@ -115,6 +115,8 @@ static void describe_deck(cli_run *run, const ritz_deck *deck)
                    deck->equations.count);
     if (deck->equations.refused)
         sink_field(run, "", "", "%s", deck->equations.refused);
+    if (deck->unnumbered)
+        sink_field(run, "", "", "%s", deck->unnumbered);
 }
 
 /* Any of them, by its kind. */

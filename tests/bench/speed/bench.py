@@ -75,39 +75,18 @@ def measure(shop):
     finally:
         shutil.rmtree(shop.disk, ignore_errors=True)
     result["parts"] = [{
-        "models": shop.models, "quick": shop.quick, "of": measured(result),
+        "models": shop.models, "quick": shop.quick,
         "repeats": max(shop.repeats, 1), "seconds": shop.elapsed(), "others": others.part(),
         "date": result["machine"].pop("date"),
         "commit": result["machine"].pop("commit")}]
     return result
 
 
-def measured(result):
-    """Names of all jobs and figures that a run measured."""
-    return sorted(f"{model} {name}" for key in ("runs", "figures")
-                  for model, found in result[key].items()
-                  for name, what in found.items() if "why" not in what)
-
-
-def best(one, other):
-    """Limits of a machine that were measured twice: a disturbed one is less."""
-    return {key: max(value, other.get(key, value))
-            for key, value in (other | one).items()}
-
-
 def join(result, earlier):
     """Add what an earlier run on the same machine measured of other models, and
-    of jobs and figures that this run left out. An earlier run of which nothing
-    is left is not named any more."""
+    of jobs and figures that this run left out."""
     if earlier["machine"]["processor"] != result["machine"]["processor"]:
         sys.exit("bench.py: --add: the last run was on another processor")
-    now = set(result["parts"][0]["of"])
-    for part in earlier["parts"]:
-        part["of"] = [name for name in part["of"] if name not in now]
-    earlier["parts"] = [part for part in earlier["parts"] if part["of"]]
-    for threads, found in earlier["limits"].items():
-        result["limits"][threads] = best(
-            result["limits"].get(threads, {}), found)
     for key in ("runs", "figures", "models"):
         for model, found in earlier[key].items():
             result[key][model] = found | result[key].get(model, {})

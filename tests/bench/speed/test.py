@@ -155,26 +155,15 @@ def check_differences():
 
 def check_joined():
     """An earlier run is kept where the new one measured nothing."""
-    def run(read, **jobs):
-        result = {"machine": {"processor": "p"}, "figures": {},
-                  "runs": {"S10": {job: {"wall": wall}
-                                   for job, wall in jobs.items()}},
-                  "models": {"S10": {"dofs": 1}},
-                  "limits": {"2": {"threads": 2, "read": read}}}
-        return result | {"parts": [{"of": bench.measured(result)}]}
+    def run(model, **jobs):
+        return {"machine": {"processor": "p"}, "runs": {model: jobs},
+                "figures": {}, "models": {model: {"dofs": 1}},
+                "parts": [{"models": [model]}]}
 
-    new, old = run(8.0, basis=2), run(9.0, basis=1, reduce=3)
+    new, old = run("S10", basis=2), run("S10", basis=1, reduce=3)
     bench.join(new, old)
-    check(new["runs"] == {"S10": {"basis": {"wall": 2}, "reduce": {"wall": 3}}}
-          and [part["of"] for part in new["parts"]] == [["S10 reduce"],
-                                                        ["S10 basis"]],
-          "--add keeps what is not measured again")
-    check(new["limits"]["2"]["read"] == 9.0, "and the better limit")
-    last = run(7.0, basis=4, reduce=5)
-    bench.join(last, new)
-    check([part["of"] for part in last["parts"]]
-          == [["S10 basis", "S10 reduce"]],
-          "a run of which nothing is left is not named")
+    check(new["runs"] == {"S10": {"basis": 2, "reduce": 3}}
+          and len(new["parts"]) == 2, "--add keeps what is not measured again")
 
 
 def check_tables():

@@ -16,6 +16,7 @@ static void each_format_of_decks_says_what_it_is(void **state)
         assert_non_null(ritz_decks[k]->parse);
     }
     assert_ptr_equal(ritz_deck_recognise("GRID,1\n", 7), &ritz_deck_nastran);
+    assert_ptr_equal(ritz_deck_recognise("*NODE\n", 6), &ritz_deck_inp);
     assert_null(ritz_deck_recognise("GRID\0", 5));
 }
 
