@@ -75,20 +75,6 @@ static bool is_harwell_boeing(const char *bytes, int64_t size)
            ritz_decimal_scan_wholes(&at, text.line_end, SIZES, sizes);
 }
 
-/* Whether the text is a value with a point or an exponent, and nothing else. */
-static bool is_real(const char *at, const char *end)
-{
-    ritz_decimal number = {0};
-    const char *from = at;
-    bool point = false;
-
-    if (!ritz_decimal_scan(&at, end, &number) || at != end)
-        return false;
-    for (; from < end; from++)
-        point = point || *from == '.' || (*from | 32) == 'e';
-    return point;
-}
-
 /* Lines "node.direction". */
 static bool is_calculix_dofs(const char *bytes, int64_t size)
 {
@@ -104,29 +90,6 @@ static bool is_calculix_dofs(const char *bytes, int64_t size)
             return false;
     }
     return count > 0;
-}
-
-/* Lines "node,direction, node,direction, value" after comments. */
-static bool is_matrix_input(const char *bytes, int64_t size)
-{
-    static const char *const comment[] = {"**", NULL};
-    ritz_lines text = lines_of(bytes, size);
-    const char *at = NULL;
-
-    do {
-        if (!next_line(&text))
-            return false;
-    } while (begins(text.line, text.line_end, comment));
-    at = text.line;
-    for (int k = 0; k < 4; k++) {
-        int64_t number = 0;
-
-        if (!ritz_decimal_scan_whole(&at, text.line_end, &number) ||
-            number < 1 || at == text.line_end || *at++ != ',')
-            return false;
-        at = ritz_decimal_skip(at, text.line_end);
-    }
-    return is_real(at, text.line_end);
 }
 
 /* The header is a record of 100 whole numbers. The first of them is the kind of
@@ -160,8 +123,6 @@ const ritz_unread ritz_unread_formats[] = {
      "write '%%MatrixMarket' there", has_short_banner},
     {"a Harwell-Boeing file", "write it as Matrix Market", is_harwell_boeing},
     {"a list of dofs of CalculiX", "it is for --dofs", is_calculix_dofs},
-    {"a matrix of Abaqus as it reads matrices",
-     "let Abaqus write it with FORMAT=COORDINATE", is_matrix_input},
     {"a binary file of ANSYS", "let ANSYS export matrices as Matrix Market",
      is_ansys_binary},
     {"an input file or a list of ANSYS",

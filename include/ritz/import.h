@@ -1,8 +1,8 @@
 /*
  * Matrices in foreign files: NASTRAN OUTPUT4, DMIG and punch, Matrix Market,
- * MAT, coordinates of CalculiX and Abaqus. A format is recognised by content,
- * never by name. MAT 7.3 files are HDF5 files, which ritz_container_guard
- * protects against.
+ * MAT, and coordinates, MATRIX INPUT and USER ELEMENT of Abaqus and CalculiX. A
+ * format is recognised by content, never by name. MAT 7.3 files are HDF5 files,
+ * which ritz_container_guard protects against.
  */
 #ifndef RITZ_IMPORT_H
 #define RITZ_IMPORT_H
@@ -93,8 +93,10 @@ extern const ritz_format *const ritz_formats[];
 extern const ritz_format ritz_format_coordinates;
 extern const ritz_format ritz_format_dmig;
 extern const ritz_format ritz_format_mat;
+extern const ritz_format ritz_format_matrix_input;
 extern const ritz_format ritz_format_matrix_market;
 extern const ritz_format ritz_format_output4;
+extern const ritz_format ritz_format_user_element;
 
 /* A file format of another program that is recognised but not read. */
 typedef struct ritz_unread {

@@ -96,6 +96,29 @@ DMIG = {
                    "DMIG,PIN,2,,,3,2,-1.0,,+A\n+A,4,1,2.0\nENDDATA\n",
 }
 
+MATRIX_INPUT = {
+    "lower": "** nodes, directions, value\n101,1, 101,1,  9.89e+01\n"
+             "101,2, 101,1,  3.57e+01\n101,2, 101,2,  9.89e+01\n",
+    "both": "1,1,1,1,2.\n2,3,1,1,-1.\n1,1,2,3,-1.\n2,3,2,3,1.\n",
+    "calculix": "         7,    3,         7,    3, 0.1000000000000E+03\n",
+    "named": "*MATRIX INPUT, NAME=K, TYPE=SYMMETRIC, SCALE FACTOR=2.\n"
+             "1,1,1,1,4.\n*MATRIX INPUT, NAME=D, TYPE=UNSYMMETRIC\n"
+             "1,1,1,2,4.\n",
+}
+USER_ELEMENT = {
+    "abaqus": "**\n*USER ELEMENT, NODES= 2, LINEAR\n** ELEMENT NODES\n"
+              "** 7, 3\n1, 2\n2, 6\n*MATRIX,TYPE=STIFFNESS\n9.,\n-3., 8.\n"
+              "1., 2., 7.\n*MATRIX,TYPE=MASS\n1.,\n0., 1.\n0., 0., 1.\n",
+    "calculix": "** GENERATION OF SUBSTRUCTURE\n"
+                "*USER ELEMENT,NODES=          2,LINEAR\n** ELEMENT NODES\n"
+                "**         4,         4,\n         1\n         2,         3\n"
+                "*MATRIX,TYPE=STIFFNESS\n 0.1000000000000E+03,\n"
+                "-0.1000000000000E+02, 0.1000000000000E+03,\n",
+    "wide": "*USER ELEMENT,LINEAR,NODES=1\n** ELEMENT NODES\n** 1\n"
+            "1,2,3,4,5,6\n*MATRIX,TYPE=MASS\n1.\n0.,1.\n0.,0.,1.\n"
+            "0.,0.,0.,1.\n0.,0.,0.,0.\n1.\n0.,0.,0.,0.\n0.,1.\n",
+}
+
 
 def mat_tag(kind, body):
     return struct.pack("<II", kind, len(body)) + body + b"\0" * (-len(body) % 8)
@@ -472,9 +495,11 @@ CORPUS = {
                 "swapped": output4_binary(True),
                 "complex": output4_binary(False, True)},
     "matrix-market": MARKET, "coordinates": COORDINATES, "dmig": DMIG,
+    "matrix-input": MATRIX_INPUT, "user-element": USER_ELEMENT,
     "mat": mat_files(), "mat-hdf5": MAT_HDF5,
     "matrices": {**FOREIGN, **MARKET, **COORDINATES, **DMIG,
-                 "output4": OUTPUT4},
+                 "output4": OUTPUT4, "matrix-input": MATRIX_INPUT["named"],
+                 "user-element": USER_ELEMENT["abaqus"]},
     "deck": DECK, "import": IMPORT, "state-space": STATE_SPACE,
     "container": CONTAINER, "scene": SCENE, "signal": SIGNAL, "texts": TEXTS,
     "claims": CLAIMS, "records": RECORDS, "tracks": TRACKS,

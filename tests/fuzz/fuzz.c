@@ -18,6 +18,8 @@ static const fuzz_target targets[] = {
     {"matrix-market", "Matrix Market", fuzz_matrix_market},
     {"coordinates", "entries without a header", fuzz_coordinates},
     {"dmig", "DMIG and punch files", fuzz_dmig},
+    {"matrix-input", "MATRIX INPUT of Abaqus and CalculiX", fuzz_matrix_input},
+    {"user-element", "substructures of Abaqus and CalculiX", fuzz_user_element},
     {"mat", "MAT level 5, compressed too", fuzz_mat},
     {"mat-hdf5", "MAT 7.3, sound HDF5 with any content", fuzz_mat_hdf5},
     {"matrices", "any file of matrices, and what is not read", fuzz_matrices},

@@ -50,6 +50,16 @@ void fuzz_dmig(const char *bytes, int64_t size)
     read_as(&ritz_format_dmig, bytes, size);
 }
 
+void fuzz_matrix_input(const char *bytes, int64_t size)
+{
+    read_as(&ritz_format_matrix_input, bytes, size);
+}
+
+void fuzz_user_element(const char *bytes, int64_t size)
+{
+    read_as(&ritz_format_user_element, bytes, size);
+}
+
 /* Only MAT files of level 5: HDF5 is not robust to damaged bytes. */
 void fuzz_mat(const char *bytes, int64_t size)
 {

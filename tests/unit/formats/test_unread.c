@@ -25,8 +25,6 @@ static const struct sample {
             "(2I8)           (2I8)           (2D20.12)\n"
             "       1       2\n       1\n  2.0D+00\n")},
     {"a list of dofs of CalculiX", SAMPLE("1.1\n1.2\n1.3\n12.1\n")},
-    {"a matrix of Abaqus as it reads",
-     SAMPLE("** comment\n1,1, 1,1, 3.5e+10\n2,1, 1,1, -7.8e+09\n")},
     {"a binary file of ANSYS",
      SAMPLE("\x64\0\0\0\0\0\0\x80\x04\0\0\0\0\0\0\0")},
     {"a binary file of ANSYS", SAMPLE("\0\0\0\x64\x80\0\0\0\0\0\0\x0c")},
