@@ -59,7 +59,17 @@ ritz_status ritz_names_find(const ritz_import_request *request,
                             const ritz_deck *deck, ritz_side_files *side,
                             ritz_parts *parts, ritz_row_names *out);
 
-/** Names in a file of `GRID COMP` rows. */
+/** Whether a text is a mapping file of ANSYS: behind a head of words a line
+ * has two whole numbers and a label. */
+bool ritz_mapping_recognise(const char *text);
+
+/** The dof of one line of it, which must have this @p equation, from 1 on.
+ * @param[out] out  grid 0 of a blank line and of the head */
+ritz_status ritz_mapping_line(const char *path, int64_t number,
+                              const char *line, int64_t equation,
+                              ritz_dof *out);
+
+/** Names in a file of `GRID COMP` rows, or in a mapping file of ANSYS. */
 ritz_status ritz_names_of_file(const char *path, ritz_row_names *out);
 void ritz_row_names_free(ritz_row_names *names);
 

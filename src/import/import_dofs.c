@@ -96,6 +96,18 @@ static ritz_status take_line(const char *path, int64_t number, bool dotted,
     return RITZ_OK;
 }
 
+/* The dof of one line of a mapping file of ANSYS. */
+static ritz_status take_mapping(const char *path, int64_t number,
+                                const char *line, ritz_roster *named)
+{
+    ritz_dof dof = {0};
+
+    RITZ_CHECK(ritz_mapping_line(path, number, line, named->count + 1, &dof));
+    if (dof.grid > 0)
+        named->place[named->count++] = (ritz_row_place){dof, number};
+    return RITZ_OK;
+}
+
 /* By dof, then line. */
 static int compare_lines(const void *left, const void *right)
 {
@@ -133,7 +145,7 @@ ritz_status ritz_names_of_file(const char *path, ritz_row_names *out)
     RITZ_OWN(ritz_row_names) names = {0};
     RITZ_OWN(ritz_roster) named = {0}; /* at the numbers of their lines */
     RITZ_OWN_ARRAY char *text = NULL;
-    bool dotted = false;
+    bool dotted = false, mapping = false;
     int64_t lines = 1;
     int64_t number = 0;
 
@@ -141,6 +153,7 @@ ritz_status ritz_names_of_file(const char *path, ritz_row_names *out)
     dotted = is_dotted(text);
     if (!dotted)
         RITZ_CHECK_IN(path, ritz_unread_refuse(text, (int64_t)strlen(text)));
+    mapping = !dotted && ritz_mapping_recognise(text);
     for (const char *c = text; *c; c++)
         lines += *c == '\n';
     RITZ_CHECK_NEW(names.dof, lines);
@@ -150,7 +163,9 @@ ritz_status ritz_names_of_file(const char *path, ritz_row_names *out)
 
         if (end)
             *end = '\0';
-        RITZ_CHECK(take_line(path, ++number, dotted, at, &named));
+        number++;
+        RITZ_CHECK(mapping ? take_mapping(path, number, at, &named)
+                           : take_line(path, number, dotted, at, &named));
         at = end ? end + 1 : NULL;
     }
     for (; names.count < named.count; names.count++)

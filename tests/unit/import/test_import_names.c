@@ -30,6 +30,26 @@ static const char *const samples[] = {
     "# of CalculiX\n\n  12345678.1\r\n12345678.2 # a comment\n9.0\n",
 };
 
+/* Written from the documentation of HBMAT: no file of ANSYS was to be had. */
+static const char mapping[] = "  Matrix Eqn   Node   Dof\n"
+                              "         1      101    UX \r\n"
+                              "         2      101    ROTZ\n"
+                              "\n"
+                              "         3        7    uy\n";
+
+static void a_mapping_of_ansys_names_rows(void **)
+{
+    static const ritz_dof due[] = {{101, 1}, {101, 6}, {7, 2}};
+    ritz_row_names names = {0};
+
+    assert_ok(read_text(mapping, &names));
+    assert_int_equal(names.count, 3);
+    for (int k = 0; k < 3; k++)
+        assert_int_equal(ritz_dof_compare(&names.dof[k], &due[k]), 0);
+    ritz_row_names_free(&names);
+    remove(path);
+}
+
 static void rows_are_named_in_the_order_of_the_file(void **)
 {
     static const ritz_dof due[] = {{7, 6}, {2001, 0}, {7, 1}};
@@ -89,6 +109,19 @@ static void what_is_wrong_is_said_with_its_line(void **)
          "line 2: a grid and its direction are due, such as '101 3'"},
         {"99999999999999999999.1\n", "line 1: a grid and its direction"},
         {"5.2\n4.1\n5.2\n", "line 3: 'grid 5 T2' was named at line 1 already"},
+        {"1 5 UX\n2 5 TEMP\n",
+         "line 2: 'TEMP' is none of the directions UX UY UZ ROTX ROTY ROTZ"},
+        {"Eqn Node Dof\n1 5 UX\n3 5 UY\n",
+         "line 3: equation 2 is due, not '3'"},
+        {"1 5 UX\n2 0 UY\n",
+         "line 2: an equation, its node and its direction are due"},
+        {"1 5 UX\n2 5\n",
+         "line 2: an equation, its node and its direction are due"},
+        {"1 5 UX\n2 5 UY 0\n",
+         "line 2: an equation, its node and its direction are due"},
+        {"1 5 UX\nNode\n",
+         "line 2: an equation, its node and its direction are due"},
+        {"1 5 UX\n2 5 UX\n", "line 2: 'grid 5 T1' was named at line 1 already"},
         {"5 2\n4 1\n# c\n5 2\n",
          "line 4: 'grid 5 T2' was named at line 1 already"},
     };
@@ -152,6 +185,13 @@ static void a_file_cut_or_corrupted_anywhere_is_answered(void **)
     remove(path);
 }
 
+static void a_mapping_cut_anywhere_is_answered(void **)
+{
+    for (size_t cut = 0; cut < sizeof mapping; cut++)
+        assert_answered(mapping, cut);
+    remove(path);
+}
+
 static ritz_status read_and_drop(void)
 {
     ritz_row_names names = {0};
@@ -165,6 +205,8 @@ static void every_allocation_may_fail(void **)
 {
     write_file(samples[4], strlen(samples[4]));
     assert_survives_every_allocation(read_and_drop());
+    write_file(mapping, sizeof mapping - 1);
+    assert_survives_every_allocation(read_and_drop());
     write_file(samples[0], strlen(samples[0]));
     assert_survives_every_allocation(read_and_drop());
     remove(path);
@@ -173,8 +215,10 @@ static void every_allocation_may_fail(void **)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(rows_are_named_in_the_order_of_the_file),
     cmocka_unit_test(dofs_of_calculix_are_split_at_the_point),
+    cmocka_unit_test(a_mapping_of_ansys_names_rows),
     cmocka_unit_test(what_is_wrong_is_said_with_its_line),
     cmocka_unit_test(a_file_cut_or_corrupted_anywhere_is_answered),
+    cmocka_unit_test(a_mapping_cut_anywhere_is_answered),
     cmocka_unit_test(every_allocation_may_fail),
 };
 
