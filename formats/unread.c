@@ -52,29 +52,6 @@ static bool has_short_banner(const char *bytes, int64_t size)
     return begins(bytes, bytes + size, word);
 }
 
-/* Line 2 has counts of cards; line 3 has the type, such as RSA, and sizes. */
-static bool is_harwell_boeing(const char *bytes, int64_t size)
-{
-    enum { TYPE = 3, CARDS = 4, SIZES = 3 };
-    ritz_lines text = lines_of(bytes, size);
-    int64_t cards[CARDS], sizes[SIZES];
-    const char *at = NULL;
-
-    for (int k = 0; k < 2; k++)
-        if (!ritz_lines_next(&text))
-            return false;
-    at = text.line;
-    if (!ritz_decimal_scan_wholes(&at, text.line_end, CARDS, cards) ||
-        cards[0] < cards[1] + cards[2] + cards[3] || !ritz_lines_next(&text) ||
-        text.line_end - text.line < TYPE)
-        return false;
-    at = text.line + TYPE;
-    return strchr("RCPIrcpi", text.line[0]) &&
-           strchr("SUHZRsuhzr", text.line[1]) && strchr("AEae", text.line[2]) &&
-           text.line[0] && text.line[1] && text.line[2] &&
-           ritz_decimal_scan_wholes(&at, text.line_end, SIZES, sizes);
-}
-
 /* Lines "node.direction". */
 static bool is_calculix_dofs(const char *bytes, int64_t size)
 {
@@ -121,7 +98,6 @@ static bool is_ansys_deck(const char *bytes, int64_t size)
 const ritz_unread ritz_unread_formats[] = {
     {"a Matrix Market file whose first line does not begin with two '%'",
      "write '%%MatrixMarket' there", has_short_banner},
-    {"a Harwell-Boeing file", "write it as Matrix Market", is_harwell_boeing},
     {"a list of dofs of CalculiX", "it is for --dofs", is_calculix_dofs},
     {"a binary file of ANSYS", "let ANSYS export matrices as Matrix Market",
      is_ansys_binary},

@@ -78,10 +78,12 @@ int main(int argc, char **argv)
     };
     const cli_program program = {
         .name = "ritz-info",
-        .operands = {{"FILE",
-                      "a container, a matrix file (OUTPUT4, DMIG, "
-                      "Matrix Market, MAT, coordinates) or bulk data",
-                      true}},
+        .operands =
+            {{"FILE",
+              "a container, a matrix file (OUTPUT4, DMIG, "
+              "Matrix Market, Harwell-Boeing, MAT, coordinates) or bulk "
+              "data",
+              true}},
         .summary = "What is in a file: sizes, names, frequencies, checksums, "
                    "how it was made.",
         .example = "ritz-info --json blade.h5",

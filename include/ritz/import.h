@@ -92,6 +92,7 @@ typedef struct ritz_format {
 extern const ritz_format *const ritz_formats[];
 extern const ritz_format ritz_format_coordinates;
 extern const ritz_format ritz_format_dmig;
+extern const ritz_format ritz_format_harwell_boeing;
 extern const ritz_format ritz_format_mat;
 extern const ritz_format ritz_format_matrix_input;
 extern const ritz_format ritz_format_matrix_market;
@@ -100,7 +101,7 @@ extern const ritz_format ritz_format_user_element;
 
 /* A file format of another program that is recognised but not read. */
 typedef struct ritz_unread {
-    const char *name;   /* "a Harwell-Boeing file" */
+    const char *name;   /* "a binary file of ANSYS" */
     const char *advice; /* how to convert it to a format that is read */
     /** True if these bytes look like the format. @p size may be 0. */
     bool (*recognise)(const char *bytes, int64_t size);

@@ -162,11 +162,19 @@ def mat_files():
     }
 
 
+BOEING_HEAD = ("title".ljust(72) + "key     \n" +
+               "             3             1             1             1\n"
+               "%sA                        2             2             3\n"
+               "(4I4)           (4I4)           (%s)\n"
+               "   1   3   4\n   1   2   2\n")
+BOEING = {
+    "real": BOEING_HEAD % ("RS", "3E9.1") + "  1.0E+00  3.0D+00 -2.5+000\n",
+    "complex": BOEING_HEAD % ("ch", "6F4.1") + " 1.0 0.0 3.0 4.0 2.0 0.0\n",
+    "integer": BOEING_HEAD % ("iu", "3I2") + " 1 3-2\n",
+}
+
 FOREIGN = {
     "abaqus": "*HEADING\n*NODE\n1, 0., 0., 0.\n*ELEMENT, TYPE=B31\n1, 1, 2\n",
-    "harwell-boeing": "title".ljust(72) + "key     \n" +
-                      "             3             1             1\n"
-                      "RSA                        2             2\n",
     "numpy": "\x93NUMPY\x01\x00v\x00{'descr': '<f8'}\n",
     "market": "%MatrixMarket matrix coordinate real general\n1 1 1\n1 1 1\n",
     "html": "<!DOCTYPE html>\n<html></html>\n",
@@ -495,9 +503,9 @@ CORPUS = {
                 "swapped": output4_binary(True),
                 "complex": output4_binary(False, True)},
     "matrix-market": MARKET, "coordinates": COORDINATES, "dmig": DMIG,
-    "matrix-input": MATRIX_INPUT, "user-element": USER_ELEMENT,
-    "mat": mat_files(), "mat-hdf5": MAT_HDF5,
-    "matrices": {**FOREIGN, **MARKET, **COORDINATES, **DMIG,
+    "harwell-boeing": BOEING, "matrix-input": MATRIX_INPUT,
+    "user-element": USER_ELEMENT, "mat": mat_files(), "mat-hdf5": MAT_HDF5,
+    "matrices": {**FOREIGN, **MARKET, **COORDINATES, **DMIG, **BOEING,
                  "output4": OUTPUT4, "matrix-input": MATRIX_INPUT["named"],
                  "user-element": USER_ELEMENT["abaqus"]},
     "deck": DECK, "import": IMPORT, "state-space": STATE_SPACE,

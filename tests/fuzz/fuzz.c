@@ -17,6 +17,8 @@ static const fuzz_target targets[] = {
     {"output4", "NASTRAN OUTPUT4, text and binary", fuzz_output4},
     {"matrix-market", "Matrix Market", fuzz_matrix_market},
     {"coordinates", "entries without a header", fuzz_coordinates},
+    {"harwell-boeing", "Harwell-Boeing and Rutherford-Boeing",
+     fuzz_harwell_boeing},
     {"dmig", "DMIG and punch files", fuzz_dmig},
     {"matrix-input", "MATRIX INPUT of Abaqus and CalculiX", fuzz_matrix_input},
     {"user-element", "substructures of Abaqus and CalculiX", fuzz_user_element},

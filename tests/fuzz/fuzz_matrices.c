@@ -45,6 +45,11 @@ void fuzz_coordinates(const char *bytes, int64_t size)
     read_as(&ritz_format_coordinates, bytes, size);
 }
 
+void fuzz_harwell_boeing(const char *bytes, int64_t size)
+{
+    read_as(&ritz_format_harwell_boeing, bytes, size);
+}
+
 void fuzz_dmig(const char *bytes, int64_t size)
 {
     read_as(&ritz_format_dmig, bytes, size);

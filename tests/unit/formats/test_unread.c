@@ -18,12 +18,6 @@ static const struct sample {
      SAMPLE("%MatrixMarket matrix coordinate real general\n1 1 1\n1 1 2.0\n")},
     {"a Matrix Market file whose first line",
      SAMPLE("MatrixMarket matrix array real general\n1 1\n2.0\n")},
-    {"a Harwell-Boeing file",
-     SAMPLE("A title                                                 KEY\n"
-            "             3             1             1             1\n"
-            "RSA                        1             1             1   0\n"
-            "(2I8)           (2I8)           (2D20.12)\n"
-            "       1       2\n       1\n  2.0D+00\n")},
     {"a list of dofs of CalculiX", SAMPLE("1.1\n1.2\n1.3\n12.1\n")},
     {"a binary file of ANSYS",
      SAMPLE("\x64\0\0\0\0\0\0\x80\x04\0\0\0\0\0\0\0")},

@@ -30,7 +30,8 @@ static const char *const samples[] = {
     "# of CalculiX\n\n  12345678.1\r\n12345678.2 # a comment\n9.0\n",
 };
 
-/* Written from the documentation of HBMAT: no file of ANSYS was to be had. */
+/* Neither a file of ANSYS nor a description of its columns was to be had: this
+   layout is what is said of them. */
 static const char mapping[] = "  Matrix Eqn   Node   Dof\n"
                               "         1      101    UX \r\n"
                               "         2      101    ROTZ\n"
