@@ -7,13 +7,16 @@
  * SOLVER=MATRIXSTORAGE) [Dhondt2022]; Abaqus writes all entries (*MATRIX
  * OUTPUT, FORMAT=COORDINATE) [Abaqus2016]. Such a file states neither its order
  * nor its symmetry. The order is the largest row or column, of entries that are
- * zero too. A matrix with entries in one triangle only is symmetric; one with
- * entries in both is taken as it stands.
+ * zero too. A matrix none of whose entries has a counterpart across the diagonal
+ * is symmetric, as one with entries in one triangle only; another is taken as it
+ * stands.
  */
+#include "base/alloc.h"
 #include "formats/market.h"
 #include "formats/matrix.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 
 /* Whether the text is a value with a point or an exponent, and nothing else:
  * three whole numbers may be a size. */
@@ -54,10 +57,64 @@ static int64_t count_lines(const char *bytes, int64_t size)
     return text.number;
 }
 
-/* The order of the matrix, and whether a triangle has to be completed. */
-static void settle_shape(ritz_market *m)
+typedef struct pair_place {
+    int64_t low, high; /* of row and column */
+} pair_place;
+
+static int compare_places(const void *left, const void *right)
 {
-    bool above = false, below = false;
+    const pair_place *a = left, *b = right;
+    const int order = (a->low > b->low) - (a->low < b->low);
+
+    return order ? order : (a->high > b->high) - (a->high < b->high);
+}
+
+static bool is_counterpart(const ritz_market_entry *a,
+                           const ritz_market_entry *b)
+{
+    return a->row == b->col && a->col == b->row;
+}
+
+/* Whether the first entry off the diagonal has a counterpart, as it has where
+   both triangles are written. */
+static bool begins_paired(const ritz_market *m)
+{
+    int64_t first = 0;
+
+    while (first < m->count && m->entry[first].row == m->entry[first].col)
+        first++;
+    for (int64_t k = first + 1; k < m->count; k++)
+        if (is_counterpart(&m->entry[first], &m->entry[k]))
+            return true;
+    return false;
+}
+
+/* Whether any entry off the diagonal has a counterpart. */
+static ritz_status find_pair(const ritz_market *m, bool *out)
+{
+    RITZ_OWN_ARRAY pair_place *place = NULL;
+    int64_t count = 0;
+
+    *out = begins_paired(m);
+    if (*out)
+        return RITZ_OK;
+    RITZ_CHECK_NEW(place, m->count);
+    for (int64_t k = 0; k < m->count; k++) {
+        const int64_t i = m->entry[k].row, j = m->entry[k].col;
+
+        if (i != j)
+            place[count++] = (pair_place){i < j ? i : j, i < j ? j : i};
+    }
+    qsort(place, (size_t)count, sizeof *place, compare_places);
+    for (int64_t k = 1; k < count && !*out; k++)
+        *out = compare_places(&place[k - 1], &place[k]) == 0;
+    return RITZ_OK;
+}
+
+/* The order of the matrix, and whether it has to be completed. */
+static ritz_status settle_shape(ritz_market *m)
+{
+    bool above = false, below = false, paired = false;
     int64_t n = 0;
 
     for (int64_t k = 0; k < m->count; k++) {
@@ -69,7 +126,10 @@ static void settle_shape(ritz_market *m)
         n = e->col >= n ? e->col + 1 : n;
     }
     m->nrow = m->ncol = n;
-    m->symmetry = above && below ? RITZ_MARKET_GENERAL : RITZ_MARKET_SYMMETRIC;
+    if (above && below)
+        RITZ_CHECK(find_pair(m, &paired));
+    m->symmetry = paired ? RITZ_MARKET_GENERAL : RITZ_MARKET_SYMMETRIC;
+    return RITZ_OK;
 }
 
 /* Nothing but reading tells how large it is. */
@@ -95,7 +155,7 @@ static ritz_status read_matrix(const ritz_foreign *file,
     (void)which; /* there is one */
     RITZ_CHECK(ritz_market_at_line(&m, ritz_market_read_entries(&m)));
     RITZ_REFUSE_IF(m.count == 0, RITZ_ERR_FORMAT, "has no entry");
-    settle_shape(&m);
+    RITZ_CHECK(settle_shape(&m));
     RITZ_CHECK(ritz_market_admit_size(&m, file->size));
     RITZ_CHECK(ritz_market_compress(&m, out));
     snprintf(out->spelling, sizeof out->spelling,

@@ -227,6 +227,11 @@ static ritz_status begin_supports(ritz_inp *all, const inp_kind *kind)
         return ritz_inp_refuse(all, keyword->place,
                                "'*BOUNDARY' is in a second step: leave out "
                                "the supports that do not act");
+    if (all->step_of_matrices > 0 && all->step > all->step_of_matrices)
+        return ritz_inp_refuse(all, keyword->place,
+                               "'*BOUNDARY' is in a step after the one that "
+                               "makes the matrices, which has no such "
+                               "support: leave it out");
     if (ritz_inp_parameter(keyword, "LOAD CASE"))
         return ritz_inp_refuse(all, keyword->place,
                                "'*BOUNDARY' with LOAD CASE acts at times: "
@@ -257,6 +262,10 @@ static ritz_status add_constraint(ritz_inp *all, const char *keyword,
 static ritz_status take_equation(ritz_inp *all)
 {
     if (all->due == 0) {
+        if (all->fields.count > 1 && ritz_inp_field(all, 1).length > 0)
+            return ritz_inp_refuse(all, all->fields.place,
+                                   "'*EQUATION' has its number of terms alone "
+                                   "in the first line");
         RITZ_CHECK(ritz_inp_id(all, 0, &all->due));
         return add_constraint(all, "EQUATION", all->due, all->fields.place);
     }
@@ -311,6 +320,8 @@ static ritz_status begin_abaqus(ritz_inp *all, const inp_kind *kind)
 {
     (void)kind;
     note_abaqus(all);
+    if (all->step_of_matrices == 0)
+        all->step_of_matrices = all->step;
     return RITZ_OK;
 }
 
@@ -334,10 +345,10 @@ static ritz_status begin_part(ritz_inp *all, const inp_kind *kind)
 
 static ritz_status take_shift(ritz_inp *all)
 {
-    if (all->lines > 0)
+    if (all->lines > 0 || all->fields.count > 3)
         return ritz_inp_refuse(all, all->fields.place,
-                               "the second line of '*INSTANCE' turns it, "
-                               "which is not read");
+                               "'*INSTANCE' is turned, which is not read: "
+                               "its line has three coordinates");
     for (int64_t i = 0; i < 3; i++)
         RITZ_CHECK(ritz_inp_real(all, i, &all->shift[i]));
     return RITZ_OK;
@@ -460,8 +471,11 @@ static ritz_status begin_data(ritz_inp *all)
     all->into = -1;
     all->begun = all->due = all->lines = 0;
     all->imposed = false;
-    if (solver && ritz_inp_is(*solver, "MATRIXSTORAGE"))
+    if (solver && ritz_inp_is(*solver, "MATRIXSTORAGE")) {
         all->program = RITZ_INP_CALCULIX;
+        if (all->step_of_matrices == 0)
+            all->step_of_matrices = all->step;
+    }
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
         if (ritz_inp_is(all->keyword.name, kinds[k].name))
             return kinds[k].begin(all, &kinds[k]);

@@ -154,9 +154,10 @@ struct ritz_inp {
 
     /* of the deck so far */
     ritz_inp_program program;
-    int64_t step;            /* number of steps */
-    int64_t step_of_support; /* step with supports; 0: none has them */
-    int64_t supports_before; /* of the step that is open */
+    int64_t step;             /* number of steps */
+    int64_t step_of_support;  /* step with supports; 0: none has them */
+    int64_t step_of_matrices; /* first step that makes matrices; 0: none */
+    int64_t supports_before;  /* of the step that is open */
     int64_t num_containers;
     ritz_inp_container open;  /* that is read */
     ritz_inp_container home;  /* that has the nodes */

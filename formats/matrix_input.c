@@ -92,8 +92,12 @@ static ritz_status take_parameter(ritz_matrix_input *m, ritz_comma_field field)
         return ritz_abaqus_name(&value, m->name);
     if (ritz_abaqus_spells(&field, "TYPE"))
         return take_type(&value, &m->type);
-    if (ritz_abaqus_spells(&field, "SCALE FACTOR"))
-        return ritz_abaqus_real(&value, &digits, &m->scale);
+    if (ritz_abaqus_spells(&field, "SCALE FACTOR")) {
+        RITZ_CHECK(ritz_abaqus_real(&value, &digits, &m->scale));
+        RITZ_REFUSE_IF(m->scale == 0.0, RITZ_ERR_FORMAT,
+                       "SCALE FACTOR of *MATRIX INPUT is 0");
+        return RITZ_OK;
+    }
     RITZ_REFUSE_IF(ritz_abaqus_spells(&field, "INPUT"), RITZ_ERR_FORMAT,
                    "the entries are in another file, '%.*s': give that one",
                    ritz_abaqus_quoted(&value), value.at);

@@ -36,8 +36,7 @@ int main(int argc, char **argv)
                  "write the states x' = A x + B u, y = C x + D u, with damping "
                  "in A"),
         CLI_FLAG("force", &given.force,
-                 "export even a model that is unstable or of unknown "
-                 "errors"),
+                 "export even a model that is unstable or of unknown errors"),
         CLI_TEXT("modes", &request->modes, "LIST",
                  "shapes of these modes or columns, as 1-6,9 (uff, vtu, "
                  "xdmf) [all; 10 of a component]"),

@@ -56,6 +56,8 @@ static void one_triangle_is_completed(void **)
                  "1 3  0.0e+00\n2 3  4.0e+00\n3 3  3.0e+02\n",
                  full, true);
     assert_holds("1 1 8.5\n2 1 -2.\n2 2 1.25\n3 2 4.\n3 3 300.\n", full, true);
+    /* each pair once, whichever triangle it is in */
+    assert_holds("1 1 8.5\n1 2 -2.\n2 2 1.25\n3 2 4.\n3 3 300.\n", full, true);
     /* in any order, with blank lines, Fortran's exponents and other ends */
     assert_holds("\n  3 3 3.D+2\r\n1 1  8.5 \r\n\r\n2 3\t4\n2 2 1.25\n1 2 -2.0",
                  full, true);

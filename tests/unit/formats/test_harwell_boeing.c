@@ -177,83 +177,82 @@ static void a_file_of_scipy_is_read_if_it_states_its_width(void **state)
     assert_int_equal(m->digits, 17);
 }
 
+static const struct {
+    const char *text, *words;
+} wrong[] = {
+    {HEAD("PSA") E12 PLACES, "line 3: type 'PSA' is a pattern"},
+    {HEAD("qsa") E12 PLACES, "type 'QSA' is a pattern"},
+    {HEAD("RSE") E12 PLACES THREE, "type 'RSE' has matrices of elements"},
+    {HEAD("RHA") E12 PLACES THREE, "hermitian, but not complex"},
+    {TWO SIZES("RSA", "2", "3", "3") E12 PLACES THREE,
+     "type 'RSA' cannot be 2 x 3"},
+    {TWO "RUA                        2             2     999999999\n" E12 PLACES
+         THREE,
+     "2 x 2 with 999999999 entries is more than"},
+    {HEAD("RUA"), "line 3: ends before its formats"},
+    {HEAD("RUA") FORMS("(4F4.0)         ", I4, "(3E12.4)"),
+     "line 4: '(4F4.0)' is not a format of whole numbers"},
+    {HEAD("RUA") FORMS(I4, "4I4             ", "(3E12.4)"),
+     "line 4: '4I4' is not a format of whole numbers"},
+    {HEAD("RUA") FORMS(I4, I4, "(3(1X,E12.4))"),
+     "line 4: '(3(1X,E12.4))' is not a format of values"},
+    {HEAD("RUA") FORMS(I4, I4, "(3E12.4E)"), "is not a format of values"},
+    {HEAD("RUA") FORMS(I4, I4, "(0E12.4)"), "is not a format of values"},
+    {HEAD("RUA") FORMS(I4, I4, "(3E)"), "is not a format of values"},
+    {HEAD("RUA") FORMS(I4, I4, "(3E12.)"), "is not a format of values"},
+    {HEAD("RUA") FORMS(I4, I4, "(1P,E12.4"), "is not a format of values"},
+    {TITLE COUNTS("4", "1", "1", "1", "1") SIZES("RUA", "2", "2", "3") E12,
+     "ends before its fifth line"},
+    {HEAD("RUA") FORMS("(2I4)           ", I4, "(3E12.4)") PLACES THREE,
+     "3 pointers as (2I4) take 2 lines, but the head says 1"},
+    {HEAD("RUA") FORMS(I4, "(1I4)           ", "(3E12.4)") PLACES THREE,
+     "3 rows as (1I4) take 3 lines"},
+    {HEAD("RUA") FORMS(I4, I4, "(E12.4)") PLACES THREE,
+     "3 values as (E12.4) take 3 lines"},
+    {HEAD("RUA") E12, "line 4: ends before all numbers as (4I4)"},
+    {HEAD("RUA") E12 "   1   3", "line 5: ends within a number"},
+    {HEAD("RUA") E12 "   1   3\n", "number 3 of the line, as (4I4), is"},
+    {HEAD("RUA") E12 "   1   3   4   5\n", "line 5: '5' follows"},
+    {HEAD("RUA") E12 "   1 3.0   4\n", "line 5: '3.0' is not a whole"},
+    {HEAD("RUA") E12 "   2   3   4\n", "pointer 2 is not from 1 to 1"},
+    {HEAD("RUA") E12 "   1   5   4\n", "pointer 5 is not from 1 to 4"},
+    {HEAD("RUA") E12 "   1   3   3\n", "pointer 3 is not from 4 to 4"},
+    {TITLE COUNTS("3", "1", "1", "1", "0") SIZES("RUA", "2", "3", "3") E12
+     "   1   3   2   4\n",
+     "pointer 2 is not from 3 to 4"},
+    {HEAD("RUA") E12 "   1   3   4\n   1   2   3\n",
+     "line 6: row 3 is not from 1 to 2"},
+    {HEAD("RUA") E12 "   1   3   4\n   1   0   2\n", "row 0 is not from 1"},
+    {HEAD("RUA") E12 PLACES "         1.x", "line 7: '1.x' is not a"},
+    {HEAD("RUA") E12 PLACES "         nan         1.0         2.0\n",
+     "line 7: 'nan' is not finite"},
+    {HEAD("RUA") E12 PLACES "      1.E999         1.0         2.0\n",
+     "'1.E999' is not finite"},
+    {HEAD("RUA") E12 PLACES "           5         1.0         2.0\n",
+     "'5' has no point or exponent, and is scaled as (3E12.4)"},
+    {HEAD("RUA") FORMS(I4, I4, "(1P,3E12.4)") PLACES
+     "         5.0         1.0         2.0\n",
+     "'5.0' has no point or exponent, and is scaled as (1P,3E12.4)"},
+    {HEAD("RUA") E12 PLACES THREE "\n x\n", "line 9: more than the head says"},
+    {HEAD("RUA") E12 "   1   3   4\n   2   2   1\n" THREE,
+     "entry (2, 1) is given twice"},
+    {HEAD("RSA") E12 "   1   3   4\n   1   2   1\n" THREE,
+     "entry (2, 1) is given twice; such a type gives one triangle only"},
+    {HEAD("RZA") E12 PLACES THREE, "diagonal entry 1 cannot be in type"},
+    {HEAD("CHA") FORMS(I4, I4, "(6F5.1)") PLACES
+     "  1.0  1.0  3.0  4.0  2.0  0.0\n",
+     "line 7: diagonal entry 1 cannot be in type 'CHA'"},
+    {TITLE COUNTS("3", "1", "1", "1", "0") "RXA\n", "holds no matrix"},
+    {TITLE COUNTS("2", "1", "1", "1", "0") SIZES("RUA", "2", "2", "3"),
+     "holds no matrix"},
+};
+
 static void what_is_wrong_is_said_with_its_line(void **state)
 {
-    static const struct {
-        const char *text, *words;
-    } cases[] = {
-        {HEAD("PSA") E12 PLACES, "line 3: type 'PSA' is a pattern"},
-        {HEAD("qsa") E12 PLACES, "type 'QSA' is a pattern"},
-        {HEAD("RSE") E12 PLACES THREE, "type 'RSE' has matrices of elements"},
-        {HEAD("RHA") E12 PLACES THREE, "hermitian, but not complex"},
-        {TWO SIZES("RSA", "2", "3", "3") E12 PLACES THREE,
-         "type 'RSA' cannot be 2 x 3"},
-        {TWO
-         "RUA                        2             2     999999999\n" E12 PLACES
-             THREE,
-         "2 x 2 with 999999999 entries is more than"},
-        {HEAD("RUA"), "line 3: ends before its formats"},
-        {HEAD("RUA") FORMS("(4F4.0)         ", I4, "(3E12.4)"),
-         "line 4: '(4F4.0)' is not a format of whole numbers"},
-        {HEAD("RUA") FORMS(I4, "4I4             ", "(3E12.4)"),
-         "line 4: '4I4' is not a format of whole numbers"},
-        {HEAD("RUA") FORMS(I4, I4, "(3(1X,E12.4))"),
-         "line 4: '(3(1X,E12.4))' is not a format of values"},
-        {HEAD("RUA") FORMS(I4, I4, "(3E12.4E)"), "is not a format of values"},
-        {HEAD("RUA") FORMS(I4, I4, "(0E12.4)"), "is not a format of values"},
-        {HEAD("RUA") FORMS(I4, I4, "(3E)"), "is not a format of values"},
-        {HEAD("RUA") FORMS(I4, I4, "(3E12.)"), "is not a format of values"},
-        {HEAD("RUA") FORMS(I4, I4, "(1P,E12.4"), "is not a format of values"},
-        {TITLE COUNTS("4", "1", "1", "1", "1") SIZES("RUA", "2", "2", "3") E12,
-         "ends before its fifth line"},
-        {HEAD("RUA") FORMS("(2I4)           ", I4, "(3E12.4)") PLACES THREE,
-         "3 pointers as (2I4) take 2 lines, but the head says 1"},
-        {HEAD("RUA") FORMS(I4, "(1I4)           ", "(3E12.4)") PLACES THREE,
-         "3 rows as (1I4) take 3 lines"},
-        {HEAD("RUA") FORMS(I4, I4, "(E12.4)") PLACES THREE,
-         "3 values as (E12.4) take 3 lines"},
-        {HEAD("RUA") E12, "line 4: ends before all numbers as (4I4)"},
-        {HEAD("RUA") E12 "   1   3", "line 5: ends within a number"},
-        {HEAD("RUA") E12 "   1   3\n", "number 3 of the line, as (4I4), is"},
-        {HEAD("RUA") E12 "   1   3   4   5\n", "line 5: '5' follows"},
-        {HEAD("RUA") E12 "   1 3.0   4\n", "line 5: '3.0' is not a whole"},
-        {HEAD("RUA") E12 "   2   3   4\n", "pointer 2 is not from 1 to 1"},
-        {HEAD("RUA") E12 "   1   5   4\n", "pointer 5 is not from 1 to 4"},
-        {HEAD("RUA") E12 "   1   3   3\n", "pointer 3 is not from 4 to 4"},
-        {TITLE COUNTS("3", "1", "1", "1", "0") SIZES("RUA", "2", "3", "3") E12
-         "   1   3   2   4\n",
-         "pointer 2 is not from 3 to 4"},
-        {HEAD("RUA") E12 "   1   3   4\n   1   2   3\n",
-         "line 6: row 3 is not from 1 to 2"},
-        {HEAD("RUA") E12 "   1   3   4\n   1   0   2\n", "row 0 is not from 1"},
-        {HEAD("RUA") E12 PLACES "         1.x", "line 7: '1.x' is not a"},
-        {HEAD("RUA") E12 PLACES "         nan         1.0         2.0\n",
-         "line 7: 'nan' is not finite"},
-        {HEAD("RUA") E12 PLACES "      1.E999         1.0         2.0\n",
-         "'1.E999' is not finite"},
-        {HEAD("RUA") E12 PLACES "           5         1.0         2.0\n",
-         "'5' has no point or exponent, and is scaled as (3E12.4)"},
-        {HEAD("RUA") FORMS(I4, I4, "(1P,3E12.4)") PLACES
-         "         5.0         1.0         2.0\n",
-         "'5.0' has no point or exponent, and is scaled as (1P,3E12.4)"},
-        {HEAD("RUA") E12 PLACES THREE "\n x\n",
-         "line 9: more than the head says"},
-        {HEAD("RUA") E12 "   1   3   4\n   2   2   1\n" THREE,
-         "entry (2, 1) is given twice"},
-        {HEAD("RSA") E12 "   1   3   4\n   1   2   1\n" THREE,
-         "entry (2, 1) is given twice; such a type gives one triangle only"},
-        {HEAD("RZA") E12 PLACES THREE, "diagonal entry 1 cannot be in type"},
-        {HEAD("CHA") FORMS(I4, I4, "(6F5.1)") PLACES
-         "  1.0  1.0  3.0  4.0  2.0  0.0\n",
-         "line 7: diagonal entry 1 cannot be in type 'CHA'"},
-        {TITLE COUNTS("3", "1", "1", "1", "0") "RXA\n", "holds no matrix"},
-        {TITLE COUNTS("2", "1", "1", "1", "0") SIZES("RUA", "2", "2", "3"),
-         "holds no matrix"},
-    };
     (void)state;
 
-    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
-        assert_fails(read_text(cases[k].text), RITZ_ERR_FORMAT, cases[k].words);
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++)
+        assert_fails(read_text(wrong[k].text), RITZ_ERR_FORMAT, wrong[k].words);
 }
 
 static const char *const samples[] = {

@@ -314,8 +314,13 @@ static void what_a_deck_cannot_mean_is_refused(void **state)
         {"*Instance, name=A, part=B\n*Instance, name=C, part=B\n",
          "line 2: there is a second '*INSTANCE'"},
         {"*Instance, name=A, part=B\n1., 0., 0.\n0., 0., 0., 0., 0., 1., 9.\n",
-         "line 3: the second line of '*INSTANCE' turns it"},
+         "line 3: '*INSTANCE' is turned, which is not read"},
+        {"*Instance, name=A, part=B\n1., 0., 0., 0., 0., 0., 0., 0., 1., 9.\n",
+         "line 2: '*INSTANCE' is turned, which is not read"},
         {"*Instance, library=x, instance=B\n", "is of another analysis"},
+        {"*EQUATION\n2, 4, 1, 1.\n", "has its number of terms alone"},
+        {"*STEP\n*MATRIX GENERATE\n*END STEP\n*STEP\n*BOUNDARY\n1, 1\n",
+         "line 5: '*BOUNDARY' is in a step after the one that makes"},
         {"*INCLUDE\n", "line 1: '*INCLUDE' does not say its INPUT"},
         {"*INCLUDE, INPUT=\n", "INPUT of '*INCLUDE' names no file"},
         {"*INCLUDE, INPUT=x,\n*NODE\n", "ends with a comma, and no line"},
@@ -375,8 +380,8 @@ static void files_outside_the_decks_folder_are_not_quoted(void **state)
 {
     static const char *const TEXTS[] = {
         "*NODE\npass'word', 1.\n",
-        "*secret\n*SECRET WORD, INPUT=x\nsecret\n"
-        "*BOUNDARY\nsecret, secret\n",
+        ("*secret\n*SECRET WORD, INPUT=x\nsecret\n"
+         "*BOUNDARY\nsecret, secret\n"),
         "*NODE, SYSTEM=secret\n", "*EQUATION, secret\n"};
     const char *inner = folder_path("in");
     ritz_deck deck = {0};
