@@ -111,6 +111,21 @@ static ritz_status find_pair(const ritz_market *m, bool *out)
     return RITZ_OK;
 }
 
+/* Entries of the upper triangle of a symmetric matrix go to the lower one. */
+static void turn_to_lower(ritz_market *m)
+{
+    for (int64_t k = 0; k < m->count; k++) {
+        ritz_market_entry *e = &m->entry[k];
+        const int64_t row = e->row;
+
+        if (row >= e->col)
+            continue;
+        e->row = e->col;
+        e->col = row;
+        e->flipped = true;
+    }
+}
+
 /* The order of the matrix, and whether it has to be completed. */
 static ritz_status settle_shape(ritz_market *m)
 {
@@ -128,6 +143,8 @@ static ritz_status settle_shape(ritz_market *m)
     m->nrow = m->ncol = n;
     if (above && below)
         RITZ_CHECK(find_pair(m, &paired));
+    if (above && below && !paired)
+        turn_to_lower(m);
     m->symmetry = paired ? RITZ_MARKET_GENERAL : RITZ_MARKET_SYMMETRIC;
     return RITZ_OK;
 }
