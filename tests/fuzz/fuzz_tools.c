@@ -92,11 +92,13 @@ void fuzz_tracks(const char *bytes, int64_t size)
     chart_file file = {.holds = CHART_TRACKS,
                        .path = "tracks.tsv",
                        .text = strndup(bytes, (size_t)size)};
-    const chart_sources sources = {.count = 1, .file = &file};
+    cli_run run = {.quiet = true, .warnings = json_array()};
+    const chart_sources sources = {.run = &run, .count = 1, .file = &file};
     const chart_request request = {.up_to_hz = DBL_MAX};
     RITZ_OWN(picture) drawn = {0};
 
     if (file.text && picture_new("tracks.svg", false, &drawn) == RITZ_OK)
         fuzz_judge(chart_tracks(&sources, &request, &drawn));
+    json_decref(run.warnings);
     free(file.text);
 }
