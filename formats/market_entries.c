@@ -366,16 +366,18 @@ ritz_status ritz_market_read_entries(ritz_market *m)
 
 /* ---- what heads and errors share ---------------------------------------- */
 
-/* Rows or columns that a file may have beyond one for each byte. */
-enum { NULL_ROWS = 32000000 };
+/* Rows or columns that a file may have beyond one for each byte. Where no head
+   states them, a wrong digit of an index would ask for as many. */
+enum { NULL_ROWS = 32000000, BARE_ROWS = 1000000 };
 
 ritz_status ritz_market_admit_size(const ritz_market *m, int64_t bytes)
 {
-    RITZ_REFUSE_IF(m->nrow - NULL_ROWS > bytes || m->ncol - NULL_ROWS > bytes,
-                   RITZ_ERR_FORMAT,
-                   "%" PRId64 " x %" PRId64
-                   " is far more than the file can fill",
-                   m->nrow, m->ncol);
+    const int64_t spare = m->bare ? BARE_ROWS : NULL_ROWS;
+
+    RITZ_REFUSE_IF(
+        m->nrow - spare > bytes || m->ncol - spare > bytes, RITZ_ERR_FORMAT,
+        "%" PRId64 " x %" PRId64 " is far more than the file can fill", m->nrow,
+        m->ncol);
     return RITZ_OK;
 }
 

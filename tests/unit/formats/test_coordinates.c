@@ -135,6 +135,7 @@ static void what_is_wrong_is_said_with_its_line(void **)
         {"1 1 2.5\n1 2 1.\n2 1 1.\n1 2 1.\n", "entry (1, 2) is given twice"},
         {"1 1 2.5\n1 99999999 1.\n",
          "99999999 x 99999999 is far more than the file can fill"},
+        {"2000000 1 2.5\n", "2000000 x 2000000 is far more than the file"},
         {"999999999999999999 1 2.5\n", "is far more than the file can fill"},
         {"1 1 2.5\n9999999999999999999 1 2.5\n", "line 2: "},
     };
