@@ -20,6 +20,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "formats/cards.h"
+#include "formats/certificate.h"
 #include "formats/large_field.h"
 #include "formats/sink.h"
 
@@ -71,6 +72,7 @@ typedef struct dmig_deck {
     int64_t *at;         /* r, coordinates with their dofs ascending */
     int64_t num_grids;   /* dofs of the interface, the first of `at` */
     int64_t first_point; /* number of the first scalar point */
+    char *certificate;
 } dmig_deck;
 
 static void dmig_deck_free(dmig_deck *deck)
@@ -79,7 +81,7 @@ static void dmig_deck_free(dmig_deck *deck)
         ritz_dense_free(&deck->matrix[k].exact);
         ritz_dense_free(&deck->matrix[k].rounded);
     }
-    RITZ_FREE(deck->dof, deck->at);
+    RITZ_FREE(deck->dof, deck->at, deck->certificate);
 }
 
 /* ---- rounding ------------------------------------------------------------ */
@@ -462,78 +464,9 @@ static ritz_status say_losses(const dmig_deck *deck, ritz_export_report *report)
 
 /* ---- the file ------------------------------------------------------------ */
 
-/* Characters of the next comment: up to a blank if not all of the text fits. */
-static int cut_comment(const char *text)
-{
-    int length = (int)strnlen(text, COMMENT);
-
-    if (text[length])
-        for (int k = length; k > 0; k--)
-            if (text[k - 1] == ' ')
-                return k;
-    return length;
-}
-
-/* A line of text as comments that fit a card. */
 static void put_comment(FILE *file, const char *text)
 {
-    do {
-        const int length = cut_comment(text);
-
-        fputs("$ ", file);
-        for (int k = 0; k < length; k++)
-            fputc((unsigned char)text[k] < ' ' ? '?' : text[k], file);
-        fputc('\n', file);
-        text += length;
-    } while (*text);
-}
-
-static void put_measures(FILE *file, const char *title,
-                         const ritz_measures *measures)
-{
-    char text[4 * RITZ_NAME_SIZE];
-
-    if (measures->count > 0)
-        put_comment(file, title);
-    for (int64_t k = 0; k < measures->count; k++) {
-        const ritz_measure *one = &measures->item[k];
-
-        snprintf(text, sizeof text, "  %s %.4e%s%s", one->name, one->value,
-                 *one->where ? " at " : "", one->where);
-        put_comment(file, text);
-        if (!isnan(one->limit)) {
-            snprintf(text, sizeof text, "    with a limit of %.4e", one->limit);
-            put_comment(file, text);
-        }
-    }
-}
-
-/* Where it comes from and what is known of its errors. */
-static void put_certificate(FILE *file, const dmig_deck *deck)
-{
-    const ritz_reduced *reduced = deck->reduced;
-    const ritz_stamp *stamp = deck->request->stamp;
-    char text[RITZ_DAMPING_SIZE + RITZ_NAME_SIZE];
-
-    snprintf(text, sizeof text, "reduced component, by %s %s",
-             reduced->origin.method, reduced->origin.options);
-    put_comment(file, text);
-    if (stamp && stamp->command)
-        put_comment(file, stamp->command);
-    for (int64_t k = 0; stamp && k < stamp->num_inputs; k++)
-        put_comment(file, stamp->input[k]);
-    if (*reduced->units) {
-        snprintf(text, sizeof text, "units: %s", reduced->units);
-        put_comment(file, text);
-    }
-    if (*reduced->damping) {
-        snprintf(text, sizeof text, "damping: %s", reduced->damping);
-        put_comment(file, text);
-    }
-    put_measures(file, "errors that were measured:", &reduced->errors);
-    put_measures(file, "errors that were estimated:", &reduced->estimates);
-    if (reduced->errors.count + reduced->estimates.count == 0)
-        put_comment(file, "nothing is known of its errors");
+    ritz_comment_put(file, "$ ", COMMENT, text);
 }
 
 /* Where the grids are: the model that takes the matrices has them. */
@@ -646,7 +579,7 @@ static ritz_status put_deck(FILE *file, const void *what)
     const int64_t points = deck->order - deck->num_grids;
     dmig_marks marks = {.numbered = deck->request->numbered};
 
-    put_certificate(file, deck);
+    put_comment(file, deck->certificate);
     for (int64_t k = 0; k < deck->report->count; k++)
         put_comment(file, deck->report->line[k]);
     put_commands(file, deck);
@@ -675,6 +608,7 @@ static ritz_status write_deck(const ritz_export_object *object,
     deck = {.reduced = object->reduced, .request = request, .report = report};
     dmig_audit audit = {0};
 
+    RITZ_CHECK(ritz_certificate(object, request->stamp, &deck.certificate));
     RITZ_CHECK(name_coordinates(&deck));
     RITZ_CHECK(take_matrices(object, report, &deck));
     RITZ_CHECK(audit_rounding(&deck, &audit));

@@ -17,20 +17,22 @@
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "formats/certificate.h"
 #include "formats/sink.h"
 #include "model/modal.h"
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdlib.h>
 
 enum { DIRECTIONS = 6 };
 
 typedef struct superelement {
     const ritz_reduced *reduced;
-    const ritz_stamp *stamp; /* may be NULL */
-    bool weighs;             /* release 5, which reads weights */
+    bool weighs; /* release 5, which reads weights */
     int64_t grid;
     ritz_dense K, M, D; /* D {0}: none */
+    char *certificate;
 } superelement;
 
 static void superelement_free(superelement *s)
@@ -38,6 +40,7 @@ static void superelement_free(superelement *s)
     ritz_dense_free(&s->K);
     ritz_dense_free(&s->M);
     ritz_dense_free(&s->D);
+    free(s->certificate);
 }
 
 /* ---- the interface ------------------------------------------------------ */
@@ -152,67 +155,17 @@ static ritz_status fill_superelement(const ritz_reduced *reduced,
 
 /* ---- its file ----------------------------------------------------------- */
 
-/* Text of others in a comment. */
-static void put_clean(FILE *file, const char *text)
+/* The first line is a comment, the second one names the format. */
+static void print_head(FILE *file, const superelement *s)
 {
-    for (; *text; text++)
-        fputc((unsigned char)*text < ' ' ? '?' : *text, file);
-}
-
-static void print_errors(FILE *file, const ritz_reduced *reduced)
-{
-    bool measured = reduced->errors.count > 0;
-    const ritz_measures *known =
-        measured ? &reduced->errors : &reduced->estimates;
-
-    if (known->count == 0)
-        fputs("! errors: neither measured nor estimated\n", file);
-    for (int64_t k = 0; k < known->count; k++) {
-        const ritz_measure *m = &known->item[k];
-
-        fprintf(file, "! error, %s: ", measured ? "measured" : "estimated");
-        put_clean(file, m->name);
-        fprintf(file, " %.9g", m->value);
-        if (!isnan(m->limit))
-            fprintf(file, ", limit %.9g", m->limit);
-        if (*m->where)
-            fputs(", at ", file);
-        put_clean(file, m->where);
-        fputc('\n', file);
-    }
-}
-
-/* How it was made and what is known of it; the second line names the format. */
-static void print_origin(FILE *file, const superelement *s)
-{
-    const ritz_reduced *reduced = s->reduced;
-    int64_t inputs = s->stamp ? s->stamp->num_inputs : 0;
-
-    fputs("! superelement by ", file);
-    put_clean(file, reduced->origin.method);
-    if (*reduced->origin.options)
-        fputs(", ", file);
-    put_clean(file, reduced->origin.options);
-    fprintf(file, "; Ritz %s\n! Flex 5 Format\n", ritz_version());
     fprintf(file,
+            "! superelement for the module ExtPtfm\n! Flex 5 Format\n"
             "! kg m s; six motions of grid %" PRId64
-            " along basic axes, then %" PRId64 " modes\n"
-            "! damping of the matrix:%s ",
-            s->grid, s->K.ncol - DIRECTIONS,
-            s->D.val ? "" : " none, it is zero");
-    put_clean(file, reduced->damping);
-    fputc('\n', file);
-    print_errors(file, reduced);
-    for (int64_t k = 0; k < inputs; k++) {
-        fputs("! input ", file);
-        put_clean(file, s->stamp->input[k]);
-        fputc('\n', file);
-    }
-    if (s->stamp && s->stamp->command) {
-        fputs("! command: ", file);
-        put_clean(file, s->stamp->command);
-        fputc('\n', file);
-    }
+            " along basic axes, then %" PRId64 " modes\n",
+            s->grid, s->K.ncol - DIRECTIONS);
+    if (!s->D.val)
+        fputs("! the damping matrix is zero\n", file);
+    ritz_comment_put(file, "! ", 0, s->certificate);
 }
 
 static void put_zeros(FILE *file, int64_t count)
@@ -260,7 +213,7 @@ static ritz_status print_file(FILE *file, const void *what)
     const superelement *s = what;
     int64_t n = s->K.ncol;
 
-    print_origin(file, s);
+    print_head(file, s);
     fprintf(file, "!Dimension: %" PRId64 "\n", n);
     if (!s->weighs)
         fputs("!Time increment in simulation: 1\n"
@@ -310,7 +263,7 @@ static ritz_status write_superelement(const ritz_export_object *object,
     RITZ_OWN(superelement) s = {.weighs = weighs};
 
     s.reduced = object->reduced;
-    s.stamp = request->stamp;
+    RITZ_CHECK(ritz_certificate(object, request->stamp, &s.certificate));
     RITZ_CHECK(fill_superelement(object->reduced, &s));
     RITZ_CHECK(ritz_sink_write(request->output, print_file, &s));
     RITZ_CHECK(ritz_export_say(

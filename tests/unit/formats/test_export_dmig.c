@@ -100,9 +100,9 @@ static void small_component_has_these_cards(void **state)
         "DMIG*   MAAX                        1001               0\n"
         "*                   1001               0              1.\n";
     static const char *const comments[] = {
-        "$ ritz-export small.h5\n",
-        "$ 0123  small.h5\n",
-        "$   frequency-relative 1.2500e-03 at mode 7, 3.41 Hz\n",
+        "$ command: ritz-export small.h5\n",
+        "$ input: 0123  small.h5\n",
+        "$ error, measured: frequency-relative 0.00125, at mode 7, 3.41 Hz\n",
         "$ K is for K2GG = KAAX: 0 of 4 numbers are rounded",
         "$   M2GG = MAAX\n",
     };

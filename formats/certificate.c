@@ -1,0 +1,185 @@
+#include "formats/certificate.h"
+#include "base/text.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What a reduced component and a state space both tell of themselves. */
+typedef struct certified {
+    const char *what;
+    const ritz_origin *origin;
+    const ritz_columns *columns;
+    const char *units, *damping;
+    bool damped; /* matrices hold damping */
+    const ritz_measures *errors, *estimates;
+    int64_t order;
+} certified;
+
+static certified find_certified(const ritz_export_object *object)
+{
+    const ritz_reduced *r = object->reduced;
+    const ritz_state_space *s = object->states;
+
+    if (r)
+        return (certified){"reduced component",
+                           &r->origin,
+                           &r->columns,
+                           r->units,
+                           r->damping,
+                           r->D.val != NULL,
+                           &r->errors,
+                           &r->estimates,
+                           r->K.ncol};
+    return (certified){"state space", &s->origin,    &s->columns,
+                       s->units,      s->damping,    true,
+                       &s->errors,    &s->estimates, ritz_state_space_order(s)};
+}
+
+/* Text of others, which may hold any byte but NUL. */
+static void put_clean(FILE *file, const char *before, const char *text)
+{
+    fputs(before, file);
+    while (*text) {
+        const int length = ritz_letter_length(text);
+
+        if (length > 0)
+            fwrite(text, 1, (size_t)length, file);
+        else
+            fputc('?', file);
+        text += length > 0 ? length : 1;
+    }
+}
+
+static void put_origin(FILE *file, const certified *c)
+{
+    const ritz_origin *origin = c->origin;
+
+    fprintf(file, "%s by Ritz %s", c->what, ritz_version());
+    if (*origin->method)
+        put_clean(file, ": ", origin->method);
+    if (*origin->options)
+        put_clean(file, ", ", origin->options);
+    if (*origin->reference)
+        put_clean(file, ", reference ", origin->reference);
+    fputc('\n', file);
+}
+
+static void put_band(FILE *file, const certified *c)
+{
+    double lowest = INFINITY, highest = 0.0;
+
+    fprintf(file, "order: %" PRId64, c->order);
+    for (int64_t k = 0; k < c->columns->count; k++) {
+        const double hertz = c->columns->hertz[k];
+
+        if (hertz > 0.0) {
+            lowest = fmin(lowest, hertz);
+            highest = fmax(highest, hertz);
+        }
+    }
+    if (highest > 0.0)
+        fprintf(file, ", modes of the basis from %.6g to %.6g Hz", lowest,
+                highest);
+    fputc('\n', file);
+}
+
+static void put_measures(FILE *file, const char *by,
+                         const ritz_measures *measures)
+{
+    for (int64_t k = 0; k < measures->count; k++) {
+        const ritz_measure *m = &measures->item[k];
+
+        put_clean(file, by, m->name);
+        fprintf(file, " %.9g", m->value);
+        if (!isnan(m->limit))
+            fprintf(file, ", limit %.9g", m->limit);
+        if (*m->where)
+            put_clean(file, ", at ", m->where);
+        fputc('\n', file);
+    }
+}
+
+static void put_certificate(FILE *file, const certified *c,
+                            const ritz_stamp *stamp)
+{
+    put_origin(file, c);
+    put_band(file, c);
+    put_clean(file, "units: ", *c->units ? c->units : "not known");
+    put_clean(file, "\ndamping: ",
+              *c->damping ? c->damping
+              : c->damped ? "that of the matrices"
+                          : "none");
+    fputc('\n', file);
+    put_measures(file, "error, measured: ", c->errors);
+    put_measures(file, "error, estimated: ", c->estimates);
+    if (c->errors->count + c->estimates->count == 0)
+        fputs("errors: neither measured nor estimated\n", file);
+    for (int64_t k = 0; stamp && k < stamp->num_inputs; k++) {
+        put_clean(file, "input: ", stamp->input[k]);
+        fputc('\n', file);
+    }
+    if (stamp && stamp->command) {
+        put_clean(file, "command: ", stamp->command);
+        fputc('\n', file);
+    }
+}
+
+ritz_status ritz_certificate(const ritz_export_object *object,
+                             const ritz_stamp *stamp, char **out)
+{
+    const certified c = find_certified(object);
+    char *text = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&text, &size);
+    bool whole = file != NULL;
+
+    if (file) {
+        put_certificate(file, &c, stamp);
+        whole = !ferror(file);
+        whole = fclose(file) == 0 && whole;
+    }
+    if (!whole) {
+        free(text);
+        return ritz_fail(RITZ_ERR_MEMORY, "no memory for the certificate");
+    }
+    *out = text;
+    return RITZ_OK;
+}
+
+/* Bytes of the next comment among `length` of a line. */
+static int cut_line(const char *text, int length, int width)
+{
+    int whole = 0;
+
+    if (width == 0 || length <= width)
+        return length;
+    for (int k = width; k > 0; k--)
+        if (text[k - 1] == ' ')
+            return k;
+    for (int letter; whole < width; whole += letter) {
+        letter = ritz_letter_size(text + whole);
+        letter = letter > 0 ? letter : 1;
+        if (whole + letter > width)
+            break;
+    }
+    return whole;
+}
+
+void ritz_comment_put(FILE *file, const char *before, int width,
+                      const char *text)
+{
+    while (*text) {
+        int rest = (int)strcspn(text, "\n");
+
+        do {
+            const int length = cut_line(text, rest, width);
+
+            fprintf(file, "%s%.*s\n", before, length, text);
+            text += length;
+            rest -= length;
+        } while (rest > 0);
+        text += *text == '\n';
+    }
+}
