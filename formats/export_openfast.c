@@ -1,14 +1,9 @@
 /*
  * A superelement for the module ExtPtfm of OpenFAST [OpenFAST2025]: the mass,
- * stiffness and damping matrices of a Craig-Bampton component that one grid
- * joins to the tower. The first six coordinates are the motion x_b of that
- * grid along basic axes. With x_b = P q_c of the six constraint modes, P being
- * orthogonal, and q_n of all other columns,
- *
- *     q_c = P' x_b,   [q_c; q_n] = V [x_b; q_n],   K := V'K V,
- *
- * and the same of M and D. If the axes of the grid are basic ones V only orders
- * columns, and every bit is kept.
+ * stiffness and damping matrices of a component that one grid joins to the
+ * tower. The first six coordinates are the motion of that grid along basic
+ * axes, the others are modes while it is held. If constraint modes move that
+ * grid along basic axes already, every bit of the matrices is kept.
  *
  * Release 5 reads matrices behind the line that names them, and weights;
  * releases 2.3 to 4 skip a line in between, and read loads over time.
@@ -19,99 +14,41 @@
 #include "base/tolerances.h"
 #include "formats/certificate.h"
 #include "formats/sink.h"
-#include "model/modal.h"
+#include "model/interface_form.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 
-enum { DIRECTIONS = 6 };
+enum { DIRECTIONS = RITZ_FRAME_MOTIONS };
 
 typedef struct superelement {
     const ritz_reduced *reduced;
     bool weighs; /* release 5, which reads weights */
-    int64_t grid;
-    ritz_dense K, M, D; /* D {0}: none */
+    ritz_interface_form form;
     char *certificate;
 } superelement;
 
 static void superelement_free(superelement *s)
 {
-    ritz_dense_free(&s->K);
-    ritz_dense_free(&s->M);
-    ritz_dense_free(&s->D);
+    ritz_interface_form_free(&s->form);
     free(s->certificate);
 }
 
 /* ---- the interface ------------------------------------------------------ */
 
-static bool is_constraint(const ritz_reduced *reduced, int64_t j)
-{
-    return reduced->columns.kind[j] == RITZ_COLUMN_CONSTRAINT;
-}
-
-/* Whether a port is all directions of one grid, which constraint modes alone
-   move. */
-static bool is_interface(const ritz_reduced *reduced, const ritz_port_map *port)
-{
-    if (port->count != DIRECTIONS)
-        return false;
-    for (int64_t i = 0; i < DIRECTIONS; i++)
-        if (port->dof[i].grid != port->dof[0].grid ||
-            port->dof[i].component != i + 1)
-            return false;
-    for (int64_t j = 0; j < reduced->K.ncol; j++)
-        if (!is_constraint(reduced, j) &&
-            ritz_dense_col_max(&port->map, j) != 0.0)
-            return false;
-    return true;
-}
-
-/* The interface, or what to do to have one. */
+/* Six coordinates of one grid, or what to do to have them. */
 static ritz_status find_interface(const ritz_reduced *reduced,
-                                  const ritz_port_map **out)
+                                  const char *ports, ritz_interface_form *form)
 {
-    int64_t constraints = 0;
-
-    for (int64_t j = 0; j < reduced->K.ncol; j++)
-        constraints += is_constraint(reduced, j);
-    for (int64_t k = 0; constraints == DIRECTIONS && k < reduced->num_ports;
-         k++)
-        if (is_interface(reduced, &reduced->port[k])) {
-            *out = &reduced->port[k];
-            return RITZ_OK;
-        }
-    return ritz_fail(
-        RITZ_ERR_ARGUMENT,
+    RITZ_CHECK(ritz_interface_form_of(reduced, ports, form));
+    RITZ_REFUSE_IF(
+        form->count != 1, RITZ_ERR_ARGUMENT,
         "OpenFAST holds a superelement by the six directions of one grid, and "
-        "this has %" PRId64 " constraint modes of %" PRId64 " ports: tie what "
-        "is joined to one grid by an RBE2 in the deck, import that grid as the "
-        "port, and reduce with ritz-basis craig-bampton --attach it alone",
-        constraints, reduced->num_ports);
-}
-
-/* V of the head; P must be orthogonal. */
-static ritz_status order_columns(const ritz_reduced *reduced,
-                                 const ritz_port_map *port, ritz_dense *V)
-{
-    const ritz_dense *P = &port->map;
-    int64_t next = DIRECTIONS;
-    RITZ_OWN(ritz_dense) square = {0};
-
-    RITZ_CHECK(ritz_dense_mul_nt(P, P, &square));
-    for (int64_t i = 0; i < DIRECTIONS; i++)
-        ritz_dense_col(&square, i)[i] -= 1.0;
-    RITZ_REFUSE_IF(ritz_dense_max(&square) > RITZ_NEGLIGIBLE, RITZ_ERR_ARGUMENT,
-                   "the constraint modes are not unit motions of grid %" PRId64
-                   " along its axes: reduce again by craig-bampton",
-                   port->dof[0].grid);
-    RITZ_CHECK(ritz_dense_new(P->ncol, P->ncol, V));
-    for (int64_t j = 0; j < P->ncol; j++)
-        if (is_constraint(reduced, j))
-            for (int64_t i = 0; i < DIRECTIONS; i++)
-                ritz_dense_col(V, i)[j] = ritz_dense_col(P, j)[i];
-        else
-            ritz_dense_col(V, next++)[j] = 1.0;
+        "its ports have %" PRId64 " grids: tie what is joined to one grid by "
+        "an RBE2 in the deck and import that grid as the port, or name one "
+        "port with --port",
+        form->count);
     return RITZ_OK;
 }
 
@@ -132,25 +69,10 @@ static ritz_status check_units(const char *units)
 }
 
 static ritz_status fill_superelement(const ritz_reduced *reduced,
-                                     superelement *out)
+                                     const char *ports, superelement *out)
 {
-    RITZ_OWN(ritz_structure) model = {0};
-    RITZ_OWN(ritz_dense) V = {0};
-    const ritz_port_map *port = NULL;
-    ritz_damping damping = {0};
-
     RITZ_CHECK(check_units(reduced->units));
-    RITZ_CHECK(find_interface(reduced, &port));
-    RITZ_CHECK(order_columns(reduced, port, &V));
-    RITZ_CHECK(ritz_damping_parse(reduced->damping, &damping));
-    RITZ_CHECK(ritz_structure_of_reduced(reduced, &model));
-    RITZ_CHECK_IN("damping", ritz_modal_damping(&model, &damping, &model.D));
-    RITZ_CHECK(ritz_dense_congruence(&model.K, &V, &out->K));
-    RITZ_CHECK(ritz_dense_congruence(&model.M, &V, &out->M));
-    if (model.D.val)
-        RITZ_CHECK(ritz_dense_project(&model.D, &V, &out->D));
-    out->grid = port->dof[0].grid;
-    return RITZ_OK;
+    return find_interface(reduced, ports, &out->form);
 }
 
 /* ---- its file ----------------------------------------------------------- */
@@ -162,8 +84,8 @@ static void print_head(FILE *file, const superelement *s)
             "! superelement for the module ExtPtfm\n! Flex 5 Format\n"
             "! kg m s; six motions of grid %" PRId64
             " along basic axes, then %" PRId64 " modes\n",
-            s->grid, s->K.ncol - DIRECTIONS);
-    if (!s->D.val)
+            s->form.grid[0], s->form.K.ncol - DIRECTIONS);
+    if (!s->form.D.val)
         fputs("! the damping matrix is zero\n", file);
     ritz_comment_put(file, "! ", 0, s->certificate);
 }
@@ -179,7 +101,7 @@ static void put_zeros(FILE *file, int64_t count)
 static void print_matrix(FILE *file, const superelement *s, const char *title,
                          const ritz_dense *A)
 {
-    int64_t n = s->K.ncol;
+    int64_t n = s->form.K.ncol;
 
     fprintf(file, "!%s\n", title);
     if (!s->weighs)
@@ -211,7 +133,7 @@ static void print_loads(FILE *file, int64_t n)
 static ritz_status print_file(FILE *file, const void *what)
 {
     const superelement *s = what;
-    int64_t n = s->K.ncol;
+    int64_t n = s->form.K.ncol;
 
     print_head(file, s);
     fprintf(file, "!Dimension: %" PRId64 "\n", n);
@@ -219,9 +141,9 @@ static ritz_status print_file(FILE *file, const void *what)
         fputs("!Time increment in simulation: 1\n"
               "!Total simulation time in file: 1\n",
               file);
-    print_matrix(file, s, "Mass Matrix (kg, m)", &s->M);
-    print_matrix(file, s, "Stiffness Matrix (N, m)", &s->K);
-    print_matrix(file, s, "Damping Matrix (N, m, s)", &s->D);
+    print_matrix(file, s, "Mass Matrix (kg, m)", &s->form.M);
+    print_matrix(file, s, "Stiffness Matrix (N, m)", &s->form.K);
+    print_matrix(file, s, "Damping Matrix (N, m, s)", &s->form.D);
     if (s->weighs) {
         fputs("!Weight constant (N, m)\n", file);
         put_zeros(file, n);
@@ -251,7 +173,7 @@ static ritz_status say_losses(const superelement *s, ritz_export_report *report)
         report,
         "grid %lld is to be the platform reference point of ElastoDyn, "
         "and basic axis z the vertical",
-        (long long)s->grid));
+        (long long)s->form.grid[0]));
     return ritz_export_say(report, "inputs, outputs and shapes are left out: "
                                    "the file has no place for them");
 }
@@ -264,12 +186,12 @@ static ritz_status write_superelement(const ritz_export_object *object,
 
     s.reduced = object->reduced;
     RITZ_CHECK(ritz_certificate(object, request->stamp, &s.certificate));
-    RITZ_CHECK(fill_superelement(object->reduced, &s));
+    RITZ_CHECK(fill_superelement(object->reduced, request->ports, &s));
     RITZ_CHECK(ritz_sink_write(request->output, print_file, &s));
     RITZ_CHECK(ritz_export_say(
         report,
         "six directions of grid %lld and %lld modes; matrices with all digits",
-        (long long)s.grid, (long long)s.K.ncol - DIRECTIONS));
+        (long long)s.form.grid[0], (long long)s.form.K.ncol - DIRECTIONS));
     return say_losses(&s, report);
 }
 
@@ -292,7 +214,7 @@ const ritz_exporter ritz_exporter_openfast = {
     .summary = "a superelement for OpenFAST 5 (ExtPtfm)",
     .reference = "OpenFAST2025",
     .kind = "reduced",
-    .takes = RITZ_EXPORT_REDUCED,
+    .takes = RITZ_EXPORT_REDUCED | RITZ_EXPORT_PORTS,
     .write = write_weighing,
 };
 
@@ -301,6 +223,6 @@ const ritz_exporter ritz_exporter_openfast_4 = {
     .summary = "a superelement for OpenFAST 2.3 to 4 (FlexASCII)",
     .reference = "OpenFAST2025",
     .kind = "reduced",
-    .takes = RITZ_EXPORT_REDUCED,
+    .takes = RITZ_EXPORT_REDUCED | RITZ_EXPORT_PORTS,
     .write = write_loaded,
 };

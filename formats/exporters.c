@@ -10,6 +10,7 @@ const ritz_exporter *const ritz_exporters[] = {
     &ritz_exporter_openfast,
     &ritz_exporter_openfast_4,
     &ritz_exporter_output4,
+    &ritz_exporter_simscape,
     &ritz_exporter_tsv,
     &ritz_exporter_uff,
     &ritz_exporter_vtu,

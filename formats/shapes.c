@@ -299,34 +299,14 @@ ritz_status ritz_shapes_of_reduced(const ritz_reduced *reduced,
 
 RITZ_ARRAY_OF(ritz_shapes);
 
-/* Check that these are the system's bodies: sum_c P_c' M_c P_c is its mass. */
-static ritz_status check_bodies(const ritz_system *system,
-                                const ritz_configuration *at,
+static ritz_status check_shapes(const ritz_system *system,
                                 const ritz_reduced *const *bodies)
 {
-    RITZ_OWN(ritz_dense) sum = {0};
-
-    RITZ_CHECK(ritz_dense_copy(&at->M, &sum));
-    for (int64_t c = 0; c < system->num_components; c++) {
-        RITZ_OWN(ritz_dense) part = {0};
-
-        RITZ_REFUSE_IF(bodies[c]->K.ncol != at->P[c].nrow, RITZ_ERR_ARGUMENT,
-                       "'%s' has %" PRId64 " coordinates in the system and "
-                       "%" PRId64 " in its file",
-                       system->component[c].name, at->P[c].nrow,
-                       bodies[c]->K.ncol);
+    for (int64_t c = 0; c < system->num_components; c++)
         RITZ_REFUSE_IF(!bodies[c]->T.val || !bodies[c]->dof, RITZ_ERR_ARGUMENT,
                        "'%s' was reduced --without-basis, which holds its "
                        "shapes",
                        system->component[c].name);
-        RITZ_CHECK(ritz_dense_congruence(&bodies[c]->M, &at->P[c], &part));
-        ritz_dense_add(-1.0, &part, &sum);
-    }
-    RITZ_REFUSE_IF(ritz_dense_max(&sum) >
-                       RITZ_SAME_MASS * ritz_dense_max(&at->M),
-                   RITZ_ERR_ARGUMENT,
-                   "the masses of these bodies are not the mass of the system: "
-                   "it was assembled of others");
     return RITZ_OK;
 }
 
@@ -462,7 +442,8 @@ ritz_status ritz_shapes_of_system(const ritz_system *system,
 
     RITZ_REFUSE_IF(!at->places.val, RITZ_ERR_ARGUMENT,
                    "it does not say where its bodies are: assemble it anew");
-    RITZ_CHECK(check_bodies(system, at, bodies));
+    RITZ_CHECK(ritz_system_check_bodies(system, at, bodies));
+    RITZ_CHECK(check_shapes(system, bodies));
     RITZ_CHECK(ritz_eigen_dense(&at->K, &at->M, &pairs));
     if (squares)
         RITZ_CHECK(ritz_pairs_by_size(&pairs));

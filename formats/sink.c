@@ -92,6 +92,10 @@ ritz_status ritz_export_check(const ritz_exporter *exporter,
     RITZ_REFUSE_IF(
         request->numbered && !(exporter->takes & RITZ_EXPORT_NUMBERED),
         RITZ_ERR_ARGUMENT, "%s has no continuations to number", exporter->name);
+    RITZ_REFUSE_IF(request->ports && !(exporter->takes & RITZ_EXPORT_PORTS),
+                   RITZ_ERR_ARGUMENT,
+                   "%s takes a model whole, without a choice of ports",
+                   exporter->name);
     return RITZ_OK;
 }
 

@@ -6,9 +6,9 @@ static void list_formats(void)
     for (const ritz_exporter *const *e = ritz_exporters; *e; e++)
         printf("%-16s %-9s %-52s [%s]\n", (*e)->name, (*e)->kind, (*e)->summary,
                (*e)->reference);
-    printf("\nreduced: a reduced component and, but for dmig, exudyn and "
-           "openfast,\n"
-           "a system at a configuration (--at), either of which --states makes "
+    printf("\nreduced: a reduced component and, but for dmig and exudyn,\n"
+           "a system at a configuration (--at; for openfast and simscape "
+           "--component names its\nbodies), either of which --states makes "
            "a state space,\nor a state space.\nshapes: modes of a component, "
            "of a reduced component, or of a system, whose bodies\n--component "
            "names; but for uff, columns of a basis.\n");
@@ -31,6 +31,9 @@ int main(int argc, char **argv)
                 "significant digits of text [17]"),
         CLI_FLAG("numbered", &request->numbered,
                  "number continuations, as NASTRAN-95 wants them (dmig)"),
+        CLI_TEXT("port", &request->ports, "NAME[,NAME]",
+                 "ports whose grids are the interface (openfast, openfast-4, "
+                 "simscape) [those attached]"),
         MODEL_OPTIONS(&given.model),
         CLI_FLAG("states", &given.states,
                  "write the states x' = A x + B u, y = C x + D u, with damping "
@@ -42,7 +45,7 @@ int main(int argc, char **argv)
                  "xdmf) [all; 10 of a component]"),
         CLI_LIST("component", &given.component, "[BODY=]FILE",
                  "component to which a basis belongs; reduced component of a "
-                 "body of a system (uff, vtu, xdmf)"),
+                 "body of a system (simscape, uff, vtu, xdmf, openfast)"),
         CLI_ACTION("list", list_formats, "list formats and what they take"),
         {0},
     };
@@ -69,8 +72,10 @@ int main(int argc, char **argv)
         cli_refuse(&program, "%s", ritz_error_message());
     request->output = run.output;
     if (given.component.count > 0 &&
-        !(given.exporter->takes & RITZ_EXPORT_SHAPES))
-        cli_refuse(&program, "--component is for shapes of a basis");
+        !(given.exporter->takes & (RITZ_EXPORT_SHAPES | RITZ_EXPORT_PORTS)))
+        cli_refuse(&program,
+                   "--component is for shapes of a basis, and for shapes and "
+                   "ports of a system");
     if (given.states && !(given.exporter->takes & RITZ_EXPORT_STATES))
         cli_refuse(&program, "%s takes no state space, --states is not for it",
                    to);

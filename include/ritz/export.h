@@ -84,6 +84,8 @@ typedef struct ritz_export_request {
     bool text, dense;        /* output4 */
     int64_t digits;          /* text */
     bool numbered;           /* dmig: continuations have marks */
+    const char *ports;       /* names with commas between, whose grids are the
+                                interface; NULL: those that were attached */
     const char *modes;       /* shapes: which modes, "1-6,9"; NULL: the first
                                 ten of a component, all of anything else */
     const ritz_stamp *stamp; /* container: its stamp; NULL: an empty one */
@@ -116,6 +118,7 @@ enum {
     RITZ_EXPORT_MATRICES = 32,
     RITZ_EXPORT_STYLE = 64,
     RITZ_EXPORT_NUMBERED = 128,
+    RITZ_EXPORT_PORTS = 512,
 };
 
 typedef struct ritz_exporter {
@@ -139,6 +142,7 @@ extern const ritz_exporter ritz_exporter_matrix_market;
 extern const ritz_exporter ritz_exporter_openfast;
 extern const ritz_exporter ritz_exporter_openfast_4;
 extern const ritz_exporter ritz_exporter_output4;
+extern const ritz_exporter ritz_exporter_simscape;
 extern const ritz_exporter ritz_exporter_tsv;
 extern const ritz_exporter ritz_exporter_uff;
 extern const ritz_exporter ritz_exporter_vtu;

@@ -550,6 +550,32 @@ ritz_status ritz_reduced_of_configuration(const ritz_system *system,
                                           const ritz_configuration *at,
                                           ritz_reduced *out);
 
+/**
+ * Whether these are the bodies of a system, in its order: sum_c P_c' M_c P_c is
+ * its mass.
+ *
+ * @return RITZ_ERR_ARGUMENT if they are not
+ */
+ritz_status ritz_system_check_bodies(const ritz_system *system,
+                                     const ritz_configuration *at,
+                                     const ritz_reduced *const *bodies);
+
+/**
+ * Give a system at a configuration the ports of its bodies, "body/port", where
+ * the configuration puts them and along the axes of the system. Numbers of
+ * grids of body k (k = 0, 1, ...) are increased by k times the power of ten
+ * above all of them. A port with only some directions of a grid keeps them
+ * along the axes of its body.
+ *
+ * @param[in,out] reduced  of ritz_reduced_of_configuration, without ports
+ * @return RITZ_ERR_ARGUMENT as ritz_system_check_bodies, or if the system does
+ *         not say where its bodies are
+ */
+ritz_status ritz_reduced_place_ports(const ritz_system *system,
+                                     const ritz_configuration *at,
+                                     const ritz_reduced *const *bodies,
+                                     ritz_reduced *reduced);
+
 void ritz_configuration_free(ritz_configuration *configuration);
 void ritz_system_free(ritz_system *system);
 

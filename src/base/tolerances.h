@@ -720,6 +720,9 @@
    what matrices of six digits do to a rigid mode (1e-5, a judgement) and the
    order of 1 of a loose part. */
 #define RITZ_LOOSE_IN_FRAME 1e-3
+/* Part of the first flexible frequency above which a rigid motion is held by
+   the ground: matrices of six digits leave 1e-3 (their square root). */
+#define RITZ_HELD 1e-2
 /* A loss of kinetic energy above this is reported: rounding of modes that 98
    columns make is 3e-9, measured. */
 #define RITZ_ENERGY_LOST 1e-6

@@ -4,11 +4,13 @@
  * reduced component as a state space.
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "model/equations.h"
 
 #include <ritz/matrix.h>
 #include <ritz/model.h>
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -81,6 +83,141 @@ ritz_status ritz_reduced_of_configuration(const ritz_system *system,
     if (at->momentum.val)
         ritz_inertia_read(&rigid, &made.inertia);
     RITZ_MOVE(*out, made);
+    return RITZ_OK;
+}
+
+ritz_status ritz_system_check_bodies(const ritz_system *system,
+                                     const ritz_configuration *at,
+                                     const ritz_reduced *const *bodies)
+{
+    RITZ_OWN(ritz_dense) sum = {0};
+
+    RITZ_CHECK(ritz_dense_copy(&at->M, &sum));
+    for (int64_t c = 0; c < system->num_components; c++) {
+        RITZ_OWN(ritz_dense) part = {0};
+
+        RITZ_REFUSE_IF(bodies[c]->K.ncol != at->P[c].nrow, RITZ_ERR_ARGUMENT,
+                       "'%s' has %" PRId64 " coordinates in the system and "
+                       "%" PRId64 " in its file",
+                       system->component[c].name, at->P[c].nrow,
+                       bodies[c]->K.ncol);
+        RITZ_CHECK(ritz_dense_congruence(&bodies[c]->M, &at->P[c], &part));
+        ritz_dense_add(-1.0, &part, &sum);
+    }
+    RITZ_REFUSE_IF(ritz_dense_max(&sum) >
+                       RITZ_SAME_MASS * ritz_dense_max(&at->M),
+                   RITZ_ERR_ARGUMENT,
+                   "the masses of these bodies are not the mass of the system: "
+                   "it was assembled of others");
+    return RITZ_OK;
+}
+
+/* y = R x of a vector. */
+static void turn_vector(const double *R, const double x[static 3],
+                        double y[static 3])
+{
+    for (int i = 0; i < 3; i++)
+        y[i] = R[3 * i] * x[0] + R[3 * i + 1] * x[1] + R[3 * i + 2] * x[2];
+}
+
+/* Translations or rotations of a grid, rows i to i + 2, along system axes. */
+static void turn_rows(const double *R, int64_t i, ritz_dense *map)
+{
+    for (int64_t j = 0; j < map->ncol; j++) {
+        double *at = ritz_dense_col(map, j) + i;
+        double y[3];
+
+        turn_vector(R, at, y);
+        memcpy(at, y, sizeof y);
+    }
+}
+
+/* Whether rows i to i + 2 are all translations, or all rotations, of a grid. */
+static bool has_three(const ritz_port_map *port, int64_t i)
+{
+    return i + 2 < port->count && port->dof[i].component % 3 == 1 &&
+           port->dof[i + 2].grid == port->dof[i].grid &&
+           port->dof[i + 2].component == port->dof[i].component + 2;
+}
+
+/* What a body's port is in a system that has it at R x + t. */
+static ritz_status place_port(const ritz_port_map *from, const ritz_dense *P,
+                              const double *R, const double *t,
+                              ritz_port_map *out)
+{
+    memcpy(out->axes, from->axes, sizeof out->axes);
+    out->count = from->count;
+    RITZ_CHECK_COPY(out->dof, from->dof, from->count);
+    RITZ_CHECK_NEW(out->position, 3 * from->count);
+    RITZ_CHECK(ritz_dense_mul(&from->map, P, &out->map));
+    turn_vector(R, from->origin, out->origin);
+    for (int64_t i = 0; i < from->count; i++)
+        turn_vector(R, from->position + 3 * i, out->position + 3 * i);
+    for (int i = 0; i < 3; i++) {
+        out->origin[i] += t[i];
+        for (int64_t k = 0; k < from->count; k++)
+            out->position[3 * k + i] += t[i];
+    }
+    for (int64_t i = 0; i < from->count; i++)
+        if (has_three(from, i))
+            turn_rows(R, i, &out->map);
+    return RITZ_OK;
+}
+
+/* The power of ten above all grids of ports. */
+static int64_t find_offset(int64_t count, const ritz_reduced *const *bodies)
+{
+    int64_t power = 1;
+
+    for (int64_t c = 0; c < count; c++)
+        for (int64_t k = 0; k < bodies[c]->num_ports; k++)
+            for (int64_t i = 0; i < bodies[c]->port[k].count; i++)
+                while (power <= bodies[c]->port[k].dof[i].grid)
+                    power *= 10;
+    return power;
+}
+
+static ritz_status name_port(const char *body, const char *port,
+                             char out[RITZ_NAME_SIZE])
+{
+    const int length = snprintf(out, RITZ_NAME_SIZE, "%s/%s", body, port);
+
+    RITZ_REFUSE_IF(length >= RITZ_NAME_SIZE, RITZ_ERR_ARGUMENT,
+                   "the name '%s/%s' is longer than %d letters", body, port,
+                   RITZ_NAME_SIZE - 1);
+    return RITZ_OK;
+}
+
+ritz_status ritz_reduced_place_ports(const ritz_system *system,
+                                     const ritz_configuration *at,
+                                     const ritz_reduced *const *bodies,
+                                     ritz_reduced *reduced)
+{
+    const int64_t offset = find_offset(system->num_components, bodies);
+    int64_t room = 0;
+
+    RITZ_REFUSE_IF(!at->places.val, RITZ_ERR_ARGUMENT,
+                   "it does not say where its bodies are: assemble it anew");
+    RITZ_CHECK(ritz_system_check_bodies(system, at, bodies));
+    for (int64_t c = 0; c < system->num_components; c++)
+        room += bodies[c]->num_ports;
+    RITZ_CHECK_NEW(reduced->port, room);
+    for (int64_t c = 0; c < system->num_components; c++) {
+        double place[12];
+
+        for (int64_t i = 0; i < 12; i++)
+            place[i] = ritz_dense_col(&at->places, i)[c];
+        for (int64_t k = 0; k < bodies[c]->num_ports; k++) {
+            ritz_port_map *port = &reduced->port[reduced->num_ports++];
+
+            RITZ_CHECK(name_port(system->component[c].name,
+                                 bodies[c]->port[k].name, port->name));
+            RITZ_CHECK(place_port(&bodies[c]->port[k], &at->P[c], place,
+                                  place + 9, port));
+            for (int64_t i = 0; i < port->count; i++)
+                port->dof[i].grid += c * offset;
+        }
+    }
     return RITZ_OK;
 }
 

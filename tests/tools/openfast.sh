@@ -31,8 +31,12 @@ expect 1 'the units are not known: import with --units' \
     ritz-export --force --to openfast bare-small.h5 -o none.dat
 ritz-basis -q macneal-rubin --modes 6 rotor.h5 -o basis.h5
 ritz-reduce -q rotor.h5 basis.h5 -o free.h5
-expect 1 'tie what is joined to one grid by an RBE2' \
-    ritz-export --force --to openfast-4 free.h5 -o none.dat
+expect 0 'six directions of grid 1 and' \
+    ritz-export --force --to openfast-4 free.h5 -o free.dat
+expect 1 "there is no port 'bearings', is 'bearing' meant?" \
+    ritz-export --force --port bearings --to openfast free.h5 -o none.dat
+expect 2 'takes a model whole, without a choice of ports' \
+    ritz-export --port bearing --to dmig verified.h5 -o none.dat
 expect 2 'takes no state space' ritz-export --states --to openfast verified.h5 \
     -o none.dat
 works '  and nothing is written' test ! -e none.dat

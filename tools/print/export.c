@@ -277,35 +277,72 @@ static const char *find_body(const export_options *given, const char *name)
     return NULL;
 }
 
+/* The reduced components that --component names, of all bodies of a system. */
+typedef struct export_bodies {
+    model_array of;
+    const ritz_reduced **reduced; /* borrowed from these */
+} export_bodies;
+
+static void export_bodies_free(export_bodies *bodies)
+{
+    model_array_free(&bodies->of);
+    free(bodies->reduced);
+}
+
+static ritz_status read_bodies(cli_run *run, const ritz_system *system,
+                               const export_options *given, export_bodies *out)
+{
+    const int64_t count = system->num_components;
+
+    out->of.count = count;
+    RITZ_CHECK_NEW(out->of.at, count);
+    // NOLINTNEXTLINE(bugprone-sizeof-expression): an array of pointers
+    RITZ_CHECK_NEW(out->reduced, count);
+    for (int64_t c = 0; c < count; c++) {
+        const char *name = system->component[c].name;
+        const char *path = find_body(given, name);
+
+        RITZ_REFUSE_IF(!path, RITZ_ERR_ARGUMENT,
+                       "a system holds no grids, its shapes and ports are "
+                       "those of its bodies: name the reduced component of "
+                       "'%s' with --component %s=FILE",
+                       name, name);
+        RITZ_CHECK(model_read(run, path, MODEL_REDUCED, &out->of.at[c]));
+        out->reduced[c] = &out->of.at[c].reduced;
+    }
+    RITZ_REFUSE_IF(given->component.count != count, RITZ_ERR_ARGUMENT,
+                   "%d bodies are named by --component, there are %ld",
+                   given->component.count, (long)count);
+    return RITZ_OK;
+}
+
 /* Modes of a system on the grids of its bodies. */
 static ritz_status find_system_shapes(cli_run *run, const model *m,
                                       const export_options *given,
                                       ritz_shapes *out)
 {
-    const ritz_system *system = &m->system;
-    RITZ_OWN(model_array) body = {.count = system->num_components};
-    RITZ_OWN_ARRAY const ritz_reduced **reduced = NULL;
+    RITZ_OWN(export_bodies) bodies = {0};
 
-    RITZ_CHECK_NEW(body.at, body.count);
-    // NOLINTNEXTLINE(bugprone-sizeof-expression): an array of pointers
-    RITZ_CHECK_NEW(reduced, body.count);
-    for (int64_t c = 0; c < body.count; c++) {
-        const char *name = system->component[c].name;
-        const char *path = find_body(given, name);
+    RITZ_CHECK(read_bodies(run, &m->system, given, &bodies));
+    return ritz_shapes_of_system(&m->system, m->at, bodies.reduced,
+                                 given->request.modes, out);
+}
 
-        RITZ_REFUSE_IF(!path, RITZ_ERR_ARGUMENT,
-                       "a system holds no grids, its shapes are those of its "
-                       "bodies: name the reduced component of '%s' with "
-                       "--component %s=FILE",
-                       name, name);
-        RITZ_CHECK(model_read(run, path, MODEL_REDUCED, &body.at[c]));
-        reduced[c] = &body.at[c].reduced;
-    }
-    RITZ_REFUSE_IF(given->component.count != body.count, RITZ_ERR_ARGUMENT,
-                   "%d bodies are named by --component, there are %ld",
-                   given->component.count, body.count);
-    return ritz_shapes_of_system(system, m->at, reduced, given->request.modes,
-                                 out);
+/* A system at a configuration, with the ports of its bodies. */
+static ritz_status place_ports(cli_run *run, model *m,
+                               const export_options *given)
+{
+    const char *path = run->operand[0];
+    const ritz_configuration *at = NULL;
+    RITZ_OWN(export_bodies) bodies = {0};
+
+    RITZ_CHECK(model_at(m, path, given->model.at));
+    at = m->at;
+    RITZ_CHECK(read_bodies(run, &m->system, given, &bodies));
+    RITZ_CHECK(model_as_reduced(m, path, &given->model));
+    return ritz_context(
+        ritz_reduced_place_ports(&m->system, at, bodies.reduced, &m->reduced),
+        path);
 }
 
 /* Shapes to export: modes of a reduced component, of a component or of a
@@ -411,14 +448,15 @@ static ritz_status settle_damping(model *m, const char *path,
     return RITZ_OK;
 }
 
-/* Refuse a system for formats that take neither matrices of states nor
-   shapes. */
+/* Refuse a system for formats that take neither states, nor shapes, nor the
+   ports of its bodies. */
 static ritz_status check_kind(const model *m, const char *path,
                               const ritz_exporter *exporter)
 {
     RITZ_REFUSE_IF(
         m->kind == MODEL_SYSTEM &&
-            !(exporter->takes & (RITZ_EXPORT_STATES | RITZ_EXPORT_SHAPES)),
+            !(exporter->takes &
+              (RITZ_EXPORT_STATES | RITZ_EXPORT_SHAPES | RITZ_EXPORT_PORTS)),
         RITZ_ERR_ARGUMENT,
         "'%s' is a system, and %s wants a body with its grids: export the "
         "bodies, which ritz-compare, ritz-assemble and ritz-fit write by "
@@ -457,6 +495,9 @@ ritz_status export_run(cli_run *run, const export_options *given)
     RITZ_CHECK(check_kind(&m, path, given->exporter));
     if (given->exporter->takes & RITZ_EXPORT_SHAPES && m.kind == MODEL_SYSTEM)
         RITZ_CHECK(model_at(&m, path, given->model.at));
+    else if (given->exporter->takes & RITZ_EXPORT_PORTS &&
+             m.kind == MODEL_SYSTEM)
+        RITZ_CHECK(place_ports(run, &m, given));
     else
         RITZ_CHECK(model_as_reduced(&m, path, &given->model));
     RITZ_CHECK(settle_damping(&m, path, given));

@@ -115,6 +115,57 @@ static void bodies_stand_where_joints_put_them(void **state)
         }
 }
 
+/* B's second grid lies at R (x_2 - x_1) from the hinge, and moves along axes of
+   the system as B's own do, turned by 90 degrees about z. */
+static void ports_of_bodies_are_placed(void **state)
+{
+    const fixture *f = *state;
+    const ritz_reduced *const body[] = {&f->bodies.item[0], &f->bodies.item[1]};
+    const ritz_configuration *at = f->system.configuration;
+    const double place[3] = {1.5 - 0.6, 0.4 + 1.0, -0.3 - 0.4};
+    RITZ_OWN(ritz_reduced) reduced = {0};
+    RITZ_OWN(ritz_dense) own = {0};
+    const ritz_port_map *port = NULL;
+
+    assert_ok(ritz_reduced_of_configuration(&f->system, at, &reduced));
+    assert_ok(ritz_reduced_place_ports(&f->system, at, body, &reduced));
+    assert_int_equal(reduced.num_ports, 4);
+    port = ritz_reduced_port(&reduced, "B/g2");
+    assert_non_null(port);
+    assert_int_equal(port->count, 6);
+    assert_int_equal(port->dof[0].grid, 12);
+    for (int i = 0; i < 3; i++) {
+        assert_near(port->position[i], place[i], 100.0 * DBL_EPSILON);
+        assert_near(port->origin[i], place[i], 100.0 * DBL_EPSILON);
+    }
+    assert_ok(ritz_dense_mul(&body[1]->port[1].map, &at->P[1], &own));
+    for (int64_t j = 0; j < own.ncol; j++)
+        for (int i = 0; i < 6; i += 3) {
+            const double *q = ritz_dense_col(&own, j) + i;
+            const double *x = ritz_dense_col(&port->map, j) + i;
+
+            assert_near(x[0], -q[1], 1e-14);
+            assert_near(x[1], q[0], 1e-14);
+            assert_near(x[2], q[2], 1e-14);
+        }
+}
+
+static ritz_status place_once(const fixture *f)
+{
+    const ritz_reduced *const body[] = {&f->bodies.item[0], &f->bodies.item[1]};
+    RITZ_OWN(ritz_reduced) reduced = {0};
+
+    RITZ_CHECK(ritz_reduced_of_configuration(
+        &f->system, f->system.configuration, &reduced));
+    return ritz_reduced_place_ports(&f->system, f->system.configuration, body,
+                                    &reduced);
+}
+
+static void placing_survives_failing_allocations(void **state)
+{
+    assert_survives_every_allocation(place_once(*state));
+}
+
 static void bodies_of_another_system_are_refused(void **state)
 {
     fixture *f = *state;
@@ -226,6 +277,8 @@ static void no_allocation_failure_leaks(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(bodies_stand_where_joints_put_them),
+    cmocka_unit_test(ports_of_bodies_are_placed),
+    cmocka_unit_test(placing_survives_failing_allocations),
     cmocka_unit_test(bodies_of_another_system_are_refused),
     cmocka_unit_test(grid_numbers_without_room_for_an_offset_are_refused),
     cmocka_unit_test(a_container_holds_what_was_exported),
