@@ -113,10 +113,10 @@ ritz_status ritz_system_check_bodies(const ritz_system *system,
 }
 
 /* y = R x of a vector. */
-static void turn_vector(const double *R, const double x[static 3],
+static void turn_vector(const double R[static 9], const double x[static 3],
                         double y[static 3])
 {
-    for (int i = 0; i < 3; i++)
+    for (size_t i = 0; i < 3; i++)
         y[i] = R[3 * i] * x[0] + R[3 * i + 1] * x[1] + R[3 * i + 2] * x[2];
 }
 
