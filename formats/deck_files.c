@@ -242,3 +242,26 @@ void ritz_deck_files_free(ritz_deck_files *files)
     free(files->file);
     *files = (ritz_deck_files){0};
 }
+
+static bool has_direction(uint8_t mask, int64_t c)
+{
+    return (((unsigned)mask >> (unsigned)c) & 1U) != 0;
+}
+
+ritz_status ritz_deck_list_dofs(const ritz_grids *grids, const uint8_t *mask,
+                                int64_t *count, ritz_dof **out)
+{
+    enum { DIRECTIONS = 6 };
+    int64_t room = 0;
+
+    for (int64_t k = 0; k < grids->count; k++)
+        for (int64_t c = 1; c <= DIRECTIONS; c++)
+            room += has_direction(mask[k], c);
+    RITZ_CHECK_NEW(*out, room);
+    *count = 0;
+    for (int64_t k = 0; k < grids->count; k++)
+        for (int64_t c = 1; c <= DIRECTIONS; c++)
+            if (has_direction(mask[k], c))
+                (*out)[(*count)++] = (ritz_dof){grids->id[k], c};
+    return RITZ_OK;
+}

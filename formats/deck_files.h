@@ -7,7 +7,7 @@
 
 #include "formats/decimal.h"
 
-#include <ritz/base.h>
+#include <ritz/parts.h>
 
 #include <stdarg.h>
 #include <stdbool.h>
@@ -95,6 +95,11 @@ ritz_deck_refuse(const ritz_deck_files *files, int64_t file, int64_t line,
  * caller frees *out, of which *count are there after a failure too. */
 ritz_status ritz_deck_paths(const ritz_deck_files *files, int64_t *count,
                             char ***out);
+
+/** The dofs whose bits are set in @p mask, bit c of grid k for its direction c,
+ * by grid and direction. The caller frees *out. */
+ritz_status ritz_deck_list_dofs(const ritz_grids *grids, const uint8_t *mask,
+                                int64_t *count, ritz_dof **out);
 
 /** Copy the sentence of the latest failure, which is none yet. */
 ritz_status ritz_deck_keep_sentence(char **out);

@@ -21,13 +21,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { DIRECTIONS = 6 };
-
-static bool has(uint8_t mask, int64_t c)
-{
-    return (((unsigned)mask >> (unsigned)c) & 1U) != 0;
-}
-
 /* ---- nodes --------------------------------------------------------------- */
 
 /* By id, then in the order of the deck. */
@@ -181,28 +174,6 @@ static ritz_status note_imposed(const ritz_inp *all,
     return ritz_deck_keep_sentence(&out->imposed);
 }
 
-static int64_t count_bits(int64_t count, const uint8_t *mask)
-{
-    int64_t bits = 0;
-
-    for (int64_t k = 0; k < count; k++)
-        for (int64_t c = 1; c <= DIRECTIONS; c++)
-            bits += has(mask[k], c);
-    return bits;
-}
-
-/* The dofs of all bits, by node and direction. */
-static ritz_status list_bits(const ritz_grids *grids, const uint8_t *mask,
-                             int64_t *count, ritz_dof **out)
-{
-    RITZ_CHECK_NEW(*out, count_bits(grids->count, mask));
-    for (int64_t k = 0; k < grids->count; k++)
-        for (int64_t c = 1; c <= DIRECTIONS; c++)
-            if (has(mask[k], c))
-                (*out)[(*count)++] = (ritz_dof){grids->id[k], c};
-    return RITZ_OK;
-}
-
 static ritz_status list_supports(const ritz_inp *all, ritz_deck *out)
 {
     RITZ_OWN_ARRAY uint8_t *mask = NULL;
@@ -216,7 +187,7 @@ static ritz_status list_supports(const ritz_inp *all, ritz_deck *out)
         RITZ_CHECK(
             ritz_inp_mark(all, &support->nodes, support->mask, &work, mask));
     }
-    return list_bits(&out->grids, mask, &out->num_fixed, &out->fixed);
+    return ritz_deck_list_dofs(&out->grids, mask, &out->num_fixed, &out->fixed);
 }
 
 /* ---- constraints --------------------------------------------------------- */
@@ -331,6 +302,7 @@ ritz_status ritz_inp_build(ritz_inp *all, ritz_deck *out)
     out->num_strange = all->num_strange;
     RITZ_CHECK(list_supports(all, out));
     RITZ_CHECK(list_constraints(all, mask, out));
-    RITZ_CHECK(list_bits(&out->grids, mask, &out->num_dofs, &out->dof));
+    RITZ_CHECK(
+        ritz_deck_list_dofs(&out->grids, mask, &out->num_dofs, &out->dof));
     return note_rows(all, out);
 }

@@ -84,12 +84,10 @@ static bool is_ansys_binary(const char *bytes, int64_t size)
            ((b[11] >= 2 && b[11] <= 16) || b[11] == 45);
 }
 
-static bool is_ansys_deck(const char *bytes, int64_t size)
+static bool is_ansys_list(const char *bytes, int64_t size)
 {
-    static const char *const word[] = {
-        "/COM",          "/PREP7",      "/BATCH",         "/TITLE",
-        "/UNITS",        "Node Number", "Element Number", "Knotennummer",
-        "Elementnummer", NULL};
+    static const char *const word[] = {"Node Number", "Element Number",
+                                       "Knotennummer", "Elementnummer", NULL};
     ritz_lines text = lines_of(bytes, size);
 
     return next_line(&text) && begins(text.line, text.line_end, word);
@@ -101,8 +99,7 @@ const ritz_unread ritz_unread_formats[] = {
     {"a list of dofs of CalculiX", "it is for --dofs", is_calculix_dofs},
     {"a binary file of ANSYS", "let ANSYS export matrices as Matrix Market",
      is_ansys_binary},
-    {"an input file or a list of ANSYS",
-     "let ANSYS export matrices, and write the nodes as GRID", is_ansys_deck},
+    {"a list of ANSYS", "write the model by CDWRITE", is_ansys_list},
     {0},
 };
 

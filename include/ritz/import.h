@@ -263,6 +263,7 @@ typedef struct ritz_deck_format {
 /** All formats of decks, ended by NULL; the first that recognises a file reads
  * it. */
 extern const ritz_deck_format *const ritz_decks[];
+extern const ritz_deck_format ritz_deck_cdb;
 extern const ritz_deck_format ritz_deck_inp;
 extern const ritz_deck_format ritz_deck_nastran;
 

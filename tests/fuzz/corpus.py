@@ -217,6 +217,16 @@ DECK = {
            "*EQUATION\n2\n2, 1, 1., 3, 1, -0.5\n*BOUNDARY\nBOTH, 1, 2\n"
            "1, PINNED\n*INCLUDE, INPUT=more.inp\n*STEP\n"
            "*FREQUENCY, SOLVER=MATRIXSTORAGE\n2\n*END STEP\n",
+    "cdb": "/COM,ANSYS\n/PREP7\nET,1,185\nET,2,21\nKEYOP,2,3,2\n"
+           "NBLOCK,6,SOLID\n(3i5,6e9.2)\n"
+           "    1    0    0 0.00E+00 1.00E+00 0.00E+00 3.00E+01\n"
+           "    2    0    0 1.00E+00\n    3    0    0\n"
+           "N,R5.3,LOC,-1,\nEBLOCK,19,SOLID\n(19i4)\n"
+           "   1   1   1   1   0   0   0   0   8   0   1"
+           "   1   2   3   3   1   2   3   3\n  -1\n"
+           "TYPE,2\nEBLOCK,10\n(15i3)\n  2  1  1  1  0  2\n -1\n"
+           "N,R5.3,LOC,4,1,2,3\nN,R5.3,ANG,4,90,0,0\n"
+           "D,1,UX,0.0\nD,2,ALL,0.\nCE,R5.0,DEFI,1\nFINISH\n",
     "inp-part": "*Part, name=P\n*End Part\n*Assembly, name=A\n"
                 "*Instance, name=P-1, part=P\n0., 0., 5.\n*Node\n1, 1., 2.\n"
                 "7, 3., 4.\n8, 5.\n*Element, type=B32\n1, 1, 7, 8\n"

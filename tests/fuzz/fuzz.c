@@ -25,7 +25,7 @@ static const fuzz_target targets[] = {
     {"mat", "MAT level 5, compressed too", fuzz_mat},
     {"mat-hdf5", "MAT 7.3, sound HDF5 with any content", fuzz_mat_hdf5},
     {"matrices", "any file of matrices, and what is not read", fuzz_matrices},
-    {"deck", "NASTRAN bulk data, input files of Abaqus and CalculiX",
+    {"deck", "NASTRAN bulk data, input files of Abaqus, ANSYS and CalculiX",
      fuzz_deck},
     {"import", "options and files of ritz-import", fuzz_import},
     {"state-space", "the same of a state space", fuzz_state_space},

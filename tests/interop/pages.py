@@ -155,7 +155,7 @@ def write_samples():
                      "*Matrix generate, stiffness, mass", "*Node Output", "U"])
     pathlib.Path("file.full").write_bytes(
         bytes([100, 0, 0, 0, 0, 0, 0, 128, 4, 0, 0, 0]) + bytes(400))
-    put("part.cdb", ["/COM,ANSYS RELEASE 2021 R1", "/PREP7"])
+    put("nodes.txt", ["Node Number\tX Location", "1\t0.5"])
 
 
 def recognise(path):
@@ -351,7 +351,7 @@ def main():
         scipy.io.mmwrite("M.mtx", scipy.sparse.csc_matrix(M))
         write_samples()
         known = {recognise(path) for path in (
-            "header.mtx", "part.dof", "file.full", "part.cdb")}
+            "header.mtx", "part.dof", "file.full", "nodes.txt")}
         text = section("import.md", "Files that are recognised and not read")
         listed = set(re.findall(r"^\| (an? [^|]+) \|", text, re.M))
         check(known == listed, "the page lists what is recognised",

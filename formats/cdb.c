@@ -1,0 +1,648 @@
+/*
+ * The coded database of ANSYS, which CDWRITE makes [Ansys2024]: nodes with
+ * their axes, elements and supports. Blocks have a line of Fortran's format
+ * and then lines of fixed fields, of which those at the end may be missing:
+ *
+ *     NBLOCK,6,SOLID                          EBLOCK,19,SOLID
+ *     (3i9,6e21.13e3)                         (19i9)
+ *     NODE KEY KEY X Y Z THXY THYZ THZX       MAT TYPE REAL SEC ESYS DEATH SOLID
+ *                                             SHAPE NODES - ELEMENT NODE ...
+ *     N,R5.3,LOC,-1,                          -1
+ *
+ * The first field of a block's end is -1. EBLOCK without SOLID has the fields
+ * ELEMENT TYPE REAL MAT ESYS NODE ..., and TYPE,N before it tells the type.
+ *
+ * Macros are not evaluated: commands that would make other nodes or elements of
+ * those that are there are refused by name. All others are passed over.
+ */
+#include "formats/cdb.h"
+#include "base/alloc.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    MOST_FIELDS = 32,   /* of a command, and of a line of a block */
+    MOST_TYPES = 10000, /* numbers of element types */
+    MOST_NODES = 64,    /* of an element */
+    SOLID_FIELDS = 11,  /* in front of the nodes of an element */
+    PLAIN_FIELDS = 5,   /* the same of EBLOCK without SOLID */
+    MOST_DIGITS = 60,   /* of a field */
+};
+
+/* ---- lines --------------------------------------------------------------- */
+
+/* The next line without blanks around it; false at the end. */
+static bool take_line(ritz_cdb *all, ritz_piece *out, int64_t *number)
+{
+    const ritz_deck_text *top = NULL;
+
+    if (!ritz_deck_next_line(&all->reading))
+        return false;
+    top = ritz_deck_top(&all->reading);
+    *out = (ritz_piece){top->text.line, top->text.line_end - top->text.line};
+    if (out->length > 0 && out->text[out->length - 1] == '\r')
+        out->length--;
+    *number = top->text.number;
+    return true;
+}
+
+static bool is_word(ritz_piece piece, const char *word)
+{
+    const int64_t length = (int64_t)strlen(word);
+
+    if (piece.length != length)
+        return false;
+    for (int64_t k = 0; k < length; k++)
+        if (ritz_card_upper(piece.text[k]) != word[k])
+            return false;
+    return true;
+}
+
+static bool is_whole(ritz_piece piece, int64_t *out)
+{
+    const char *at = piece.text;
+    const char *end = piece.text + piece.length;
+    const bool minus = at < end && *at == '-';
+
+    at += minus;
+    if (!ritz_decimal_scan_whole(&at, end, out) || at != end)
+        return false;
+    *out = minus ? -*out : *out;
+    return true;
+}
+
+/* A number; 0 if there is none. */
+static bool is_real(ritz_piece piece, double *out)
+{
+    ritz_decimal value = {0};
+    const char *at = piece.text;
+
+    if (piece.length > 0 &&
+        !ritz_decimal_scan(&at, piece.text + piece.length, &value))
+        return false;
+    *out = value.value;
+    return at == piece.text + piece.length && isfinite(value.value);
+}
+
+/* A command, taken apart at its commas. */
+typedef struct cdb_command {
+    int64_t count, line;
+    ritz_piece field[MOST_FIELDS]; /* without blanks; the first is its name */
+} cdb_command;
+
+/* What stands behind '!' is a comment; fields beyond the last that there is
+   room for are left out. */
+static void split_command(ritz_piece text, int64_t line, cdb_command *out)
+{
+    const char *stop = memchr(text.text, '!', (size_t)text.length);
+    const char *end = stop ? stop : text.text + text.length;
+    const char *at = text.text;
+
+    *out = (cdb_command){.line = line};
+    while (out->count < MOST_FIELDS) {
+        const char *comma = memchr(at, ',', (size_t)(end - at));
+        const char *to = comma ? comma : end;
+
+        out->field[out->count++] = ritz_piece_trim((ritz_piece){at, to - at});
+        if (!comma)
+            break;
+        at = comma + 1;
+    }
+}
+
+static ritz_piece field_of(const cdb_command *command, int64_t k)
+{
+    return k < command->count ? command->field[k] : (ritz_piece){"", 0};
+}
+
+/* Of a piece in sentences: its length, at most 40, and its text. */
+#define QUOTED(piece)                                                          \
+    (int)((piece).length < 40 ? (piece).length : 40), (piece).text
+
+static ritz_status take_whole(const ritz_cdb *all, const cdb_command *command,
+                              int64_t k, int64_t *out)
+{
+    const ritz_piece field = field_of(command, k);
+
+    if (!is_whole(field, out))
+        return ritz_cdb_refuse(all, command->line,
+                               "'%.*s' of '%.*s' is no whole number",
+                               QUOTED(field), QUOTED(command->field[0]));
+    return RITZ_OK;
+}
+
+static ritz_status take_real(const ritz_cdb *all, const cdb_command *command,
+                             int64_t k, double *out)
+{
+    const ritz_piece field = field_of(command, k);
+
+    if (!is_real(field, out))
+        return ritz_cdb_refuse(all, command->line,
+                               "'%.*s' of '%.*s' is no number", QUOTED(field),
+                               QUOTED(command->field[0]));
+    return RITZ_OK;
+}
+
+/* ---- blocks -------------------------------------------------------------- */
+
+/* "(3i9,6e21.13e3)": fields of whole numbers, then of real ones. */
+typedef struct cdb_form {
+    int64_t wholes, whole_width, reals, real_width;
+} cdb_form;
+
+/* "3i9" or "6e21.13e3", which `at` is moved behind. */
+static bool scan_group(const char **at, const char *end, const char *letters,
+                       int64_t *count, int64_t *width)
+{
+    int64_t unused = 0;
+
+    *count = 1;
+    if (!ritz_decimal_scan_whole(at, end, count))
+        *count = 1;
+    if (*at == end || !strchr(letters, ritz_card_upper(**at)))
+        return false;
+    ++*at;
+    if (!ritz_decimal_scan_whole(at, end, width) || *count < 1 || *width < 1 ||
+        *count > MOST_FIELDS || *width > MOST_DIGITS)
+        return false;
+    if (*at < end && **at == '.') {
+        ++*at;
+        (void)ritz_decimal_scan_whole(at, end, &unused);
+    }
+    if (*at < end && ritz_card_upper(**at) == 'E') {
+        ++*at;
+        (void)ritz_decimal_scan_whole(at, end, &unused);
+    }
+    return true;
+}
+
+static bool scan_form(ritz_piece line, cdb_form *out)
+{
+    const char *at = line.text;
+    const char *end = line.text + line.length;
+
+    if (line.length == 0 || *at++ != '(' ||
+        !scan_group(&at, end, "I", &out->wholes, &out->whole_width))
+        return false;
+    if (at < end && *at == ',') {
+        at++;
+        if (!scan_group(&at, end, "EFDG", &out->reals, &out->real_width))
+            return false;
+    }
+    return end - at == 1 && *at == ')';
+}
+
+/* The format of a block, which the line behind its command has. */
+static ritz_status take_form(ritz_cdb *all, const cdb_command *command,
+                             bool reals, cdb_form *out)
+{
+    ritz_piece line = {"", 0};
+    int64_t number = command->line;
+
+    *out = (cdb_form){0};
+    if (!take_line(all, &line, &number) ||
+        !scan_form(ritz_piece_trim(line), out) || reals != (out->reals > 0))
+        return ritz_cdb_refuse(all, number,
+                               "'%.*s' is not followed by a format such as "
+                               "'%s'",
+                               QUOTED(command->field[0]),
+                               reals ? "(3i9,6e21.13e3)" : "(19i9)");
+    return RITZ_OK;
+}
+
+/* Field k of a line, empty beyond its end. */
+static ritz_piece cut_field(ritz_piece line, int64_t from, int64_t width)
+{
+    const int64_t at = from < line.length ? from : line.length;
+    const int64_t rest = line.length - at;
+
+    return ritz_piece_trim(
+        (ritz_piece){line.text + at, rest < width ? rest : width});
+}
+
+/* Whether a line ends a block: -1, or the command that has it. */
+static bool ends_block(ritz_piece line)
+{
+    const ritz_piece text = ritz_piece_trim(line);
+    cdb_command command = {0};
+
+    if (text.length == 0)
+        return false;
+    split_command(text, 0, &command);
+    return is_word(command.field[0], "-1") || is_word(command.field[0], "N") ||
+           is_word(command.field[0], "EN");
+}
+
+/* The whole numbers of a line; *count: up to the last that is there. */
+static ritz_status take_wholes(const ritz_cdb *all, const cdb_form *form,
+                               ritz_piece line, int64_t number, int64_t *out,
+                               int64_t *count)
+{
+    *count = 0;
+    for (int64_t k = 0; k < form->wholes; k++) {
+        const ritz_piece field =
+            cut_field(line, k * form->whole_width, form->whole_width);
+
+        out[k] = 0;
+        if (field.length == 0)
+            continue;
+        if (!is_whole(field, &out[k]))
+            return ritz_cdb_refuse(all, number, "'%.*s' is no whole number",
+                                   QUOTED(field));
+        *count = k + 1;
+    }
+    return RITZ_OK;
+}
+
+/* ---- nodes --------------------------------------------------------------- */
+
+static ritz_status add_node(ritz_cdb *all, const ritz_cdb_node *node)
+{
+    if (node->id < 1)
+        return ritz_cdb_refuse(all, node->line,
+                               "%" PRId64 " is no number of a node", node->id);
+    RITZ_CHECK_ROOM(all->node, all->num_nodes, all->nodes_room);
+    all->node[all->num_nodes++] = *node;
+    return RITZ_OK;
+}
+
+/* A coordinate or angle of a node. */
+static ritz_status take_place(const ritz_cdb *all, const cdb_form *form,
+                              ritz_piece line, int64_t k, ritz_cdb_node *node)
+{
+    const ritz_piece field =
+        cut_field(line, form->wholes * form->whole_width + k * form->real_width,
+                  form->real_width);
+    double *to = k < 3 ? &node->x[k] : &node->angle[k - 3];
+
+    if (!is_real(field, to))
+        return ritz_cdb_refuse(all, node->line, "'%.*s' is no number",
+                               QUOTED(field));
+    return RITZ_OK;
+}
+
+static ritz_status take_nodes(ritz_cdb *all, const cdb_command *command)
+{
+    enum { PLACES = 6 };
+    cdb_form form = {0};
+    ritz_piece line = {"", 0};
+    ritz_cdb_node node = {0};
+    int64_t whole[MOST_FIELDS], count = 0;
+
+    RITZ_CHECK(take_form(all, command, true, &form));
+    while (take_line(all, &line, &node.line)) {
+        if (ends_block(line))
+            return RITZ_OK;
+        RITZ_CHECK(take_wholes(all, &form, line, node.line, whole, &count));
+        node.id = whole[0];
+        for (int64_t k = 0; k < form.reals && k < PLACES; k++)
+            RITZ_CHECK(take_place(all, &form, line, k, &node));
+        RITZ_CHECK(add_node(all, &node));
+    }
+    return ritz_cdb_refuse(all, command->line, "'NBLOCK' has no end");
+}
+
+/* N,R5.3,LOC,NODE,X,Y,Z and N,R5.3,ANG,NODE,..., or N,NODE,X,Y,Z,THXY,.... */
+static ritz_status take_node(ritz_cdb *all, const cdb_command *command)
+{
+    const ritz_piece form = field_of(command, 1);
+    const bool coded = form.length > 0 && ritz_card_upper(form.text[0]) == 'R';
+    const bool angles = coded && is_word(field_of(command, 2), "ANG");
+    const int64_t first = coded ? 3 : 1;
+    ritz_cdb_node node = {.line = command->line};
+
+    RITZ_CHECK(take_whole(all, command, first, &node.id));
+    if (node.id == -1)
+        return RITZ_OK;
+    if (all->turned && !coded)
+        return ritz_cdb_refuse(all, command->line,
+                               "'N' after CSYS is not read: write the model "
+                               "by CDWRITE");
+    if (angles &&
+        (all->num_nodes == 0 || all->node[all->num_nodes - 1].id != node.id))
+        return ritz_cdb_refuse(
+            all, command->line,
+            "angles of node %" PRId64 " do not follow its position", node.id);
+    for (int64_t k = 0; k < 3; k++) {
+        RITZ_CHECK(take_real(all, command, first + 1 + k,
+                             angles ? &node.angle[k] : &node.x[k]));
+        if (!coded)
+            RITZ_CHECK(take_real(all, command, first + 4 + k, &node.angle[k]));
+    }
+    if (!angles)
+        return add_node(all, &node);
+    memcpy(all->node[all->num_nodes - 1].angle, node.angle, sizeof node.angle);
+    return RITZ_OK;
+}
+
+/* ---- elements ------------------------------------------------------------ */
+
+static ritz_status take_type(ritz_cdb *all, const cdb_command *command)
+{
+    ritz_cdb_type type = {.kind = ritz_cdb_find_kind(field_of(command, 2))};
+    ritz_cdb_type *there = NULL;
+    int64_t at = 0;
+
+    RITZ_CHECK(take_whole(all, command, 1, &type.number));
+    there = ritz_cdb_find_type(all, type.number);
+    if (there) {
+        *there = type;
+        return RITZ_OK;
+    }
+    if (all->num_types == MOST_TYPES)
+        return ritz_cdb_refuse(all, command->line,
+                               "there are more than %d element types",
+                               (int)MOST_TYPES);
+    at = ritz_cdb_seek_type(all, type.number);
+    RITZ_CHECK_ROOM(all->type, all->num_types, all->types_room);
+    memmove(all->type + at + 1, all->type + at,
+            (size_t)(all->num_types++ - at) * sizeof *all->type);
+    all->type[at] = type;
+    return RITZ_OK;
+}
+
+/* KEYOPT,TYPE,3,VALUE tells directions of some elements. */
+static ritz_status take_option(ritz_cdb *all, const cdb_command *command)
+{
+    int64_t number = 0, which = 0, value = 0;
+    ritz_cdb_type *type = NULL;
+
+    if (!is_whole(field_of(command, 1), &number) ||
+        !is_whole(field_of(command, 2), &which) || which != 3 ||
+        !is_whole(field_of(command, 3), &value))
+        return RITZ_OK;
+    type = ritz_cdb_find_type(all, number);
+    if (type)
+        type->option_3 = value;
+    return RITZ_OK;
+}
+
+static ritz_status take_open_type(ritz_cdb *all, const cdb_command *command)
+{
+    return take_whole(all, command, 1, &all->open_type);
+}
+
+static ritz_status add_joined(ritz_cdb *all, int64_t node)
+{
+    if (node < 0)
+        return ritz_cdb_refuse(all, all->element[all->num_elements - 1].line,
+                               "%" PRId64 " is no number of a node", node);
+    RITZ_CHECK_ROOM(all->joined, all->num_joined, all->joined_room);
+    all->joined[all->num_joined++] = node;
+    all->element[all->num_elements - 1].count++;
+    return RITZ_OK;
+}
+
+/* Begin an element whose nodes stand in `whole` from `from` on. */
+static ritz_status begin_element(ritz_cdb *all, int64_t type, int64_t line,
+                                 const int64_t *whole, int64_t from, int64_t to)
+{
+    RITZ_CHECK_ROOM(all->element, all->num_elements, all->elements_room);
+    all->element[all->num_elements++] = (ritz_cdb_element){
+        .type = type, .first = all->num_joined, .line = line};
+    for (int64_t k = from; k < to; k++)
+        RITZ_CHECK(add_joined(all, whole[k]));
+    return RITZ_OK;
+}
+
+/* Nodes of the element from the next line. */
+static ritz_status continue_element(ritz_cdb *all, const cdb_form *form,
+                                    int64_t due)
+{
+    const int64_t begun = all->element[all->num_elements - 1].line;
+    int64_t whole[MOST_FIELDS], count = 0, line = 0;
+    ritz_piece text = {"", 0};
+
+    while (due > 0) {
+        if (!take_line(all, &text, &line))
+            return ritz_cdb_refuse(all, begun,
+                                   "nodes of this element are missing");
+        RITZ_CHECK(take_wholes(all, form, text, line, whole, &count));
+        if (count == 0)
+            return ritz_cdb_refuse(all, line,
+                                   "nodes of the element above are missing");
+        for (int64_t k = 0; k < count && due > 0; k++, due--)
+            RITZ_CHECK(add_joined(all, whole[k]));
+    }
+    return RITZ_OK;
+}
+
+static ritz_status take_solid(ritz_cdb *all, const cdb_form *form,
+                              const int64_t *whole, int64_t count, int64_t line)
+{
+    const int64_t nodes = count > 8 ? whole[8] : 0;
+    const int64_t here = count - SOLID_FIELDS;
+
+    if (count < SOLID_FIELDS || nodes < 0 || nodes > MOST_NODES)
+        return ritz_cdb_refuse(all, line,
+                               "an element has %" PRId64 " fields and %" PRId64
+                               " nodes",
+                               count, nodes);
+    RITZ_CHECK(begin_element(all, whole[1], line, whole, SOLID_FIELDS,
+                             SOLID_FIELDS + (here < nodes ? here : nodes)));
+    return continue_element(all, form, nodes - here);
+}
+
+static ritz_status take_elements(ritz_cdb *all, const cdb_command *command)
+{
+    const bool solid = is_word(field_of(command, 2), "SOLID");
+    int64_t whole[MOST_FIELDS], count = 0, line = 0;
+    ritz_piece text = {"", 0};
+    cdb_form form = {0};
+
+    RITZ_CHECK(take_form(all, command, false, &form));
+    while (take_line(all, &text, &line)) {
+        if (ends_block(text))
+            return RITZ_OK;
+        RITZ_CHECK(take_wholes(all, &form, text, line, whole, &count));
+        RITZ_CHECK(solid ? take_solid(all, &form, whole, count, line)
+                         : begin_element(all, all->open_type, line, whole,
+                                         PLAIN_FIELDS, count));
+    }
+    return ritz_cdb_refuse(all, command->line, "'EBLOCK' has no end");
+}
+
+/* EN and E: they are counted, but for EN,R5.5,ATTR,-1 behind a block. */
+static ritz_status count_element(ritz_cdb *all, const cdb_command *command)
+{
+    const bool attributes = is_word(field_of(command, 2), "ATTR");
+    int64_t nodes = 0;
+
+    if (attributes && is_whole(field_of(command, 3), &nodes) && nodes == -1)
+        return RITZ_OK;
+    all->num_strange += attributes || is_word(command->field[0], "E");
+    return RITZ_OK;
+}
+
+/* ---- supports and constraints -------------------------------------------- */
+
+/* Directions of a label: "ROTX" is the fourth; 0: it is none. */
+static uint8_t mask_of(ritz_piece label)
+{
+    static const char *const names[] = {"UX",   "UY",   "UZ",
+                                        "ROTX", "ROTY", "ROTZ"};
+
+    for (unsigned k = 0; k < sizeof names / sizeof *names; k++)
+        if (is_word(label, names[k]))
+            return (uint8_t)(1U << (k + 1));
+    return is_word(label, "ALL") ? 0x7e : 0;
+}
+
+/* D,NODE,LABEL,VALUE */
+static ritz_status take_support(ritz_cdb *all, const cdb_command *command)
+{
+    ritz_cdb_support support = {.line = command->line};
+    double value = 0.0;
+
+    support.mask = mask_of(field_of(command, 2));
+    if (support.mask == 0)
+        return RITZ_OK;
+    if (!is_word(field_of(command, 1), "ALL"))
+        RITZ_CHECK(take_whole(all, command, 1, &support.node));
+    support.imposed = !is_real(field_of(command, 3), &value) || value != 0.0;
+    RITZ_CHECK_ROOM(all->support, all->num_supports, all->supports_room);
+    all->support[all->num_supports++] = support;
+    return RITZ_OK;
+}
+
+static ritz_status take_tie(ritz_cdb *all, const cdb_command *command)
+{
+    ritz_cdb_tie tie = {.line = command->line};
+
+    snprintf(tie.name, sizeof tie.name, "%.*s %" PRId64,
+             QUOTED(command->field[0]), all->num_ties + 1);
+    RITZ_CHECK_ROOM(all->tie, all->num_ties, all->ties_room);
+    all->tie[all->num_ties++] = tie;
+    return RITZ_OK;
+}
+
+/* ---- commands ------------------------------------------------------------ */
+
+static ritz_status take_system(ritz_cdb *all, const cdb_command *command)
+{
+    int64_t number = 0;
+
+    all->turned = !is_whole(field_of(command, 1), &number) || number != 0;
+    return RITZ_OK;
+}
+
+/* A command, and what takes it; NULL: it is refused. */
+typedef struct cdb_verb {
+    const char *name;
+    ritz_status (*take)(ritz_cdb *all, const cdb_command *command);
+} cdb_verb;
+
+static const cdb_verb verbs[] = {
+    {"NBLOCK", take_nodes},
+    {"N", take_node},
+    {"EBLOCK", take_elements},
+    {"ET", take_type},
+    {"KEYOPT", take_option},
+    {"KEYOP", take_option},
+    {"TYPE", take_open_type},
+    {"EN", count_element},
+    {"E", count_element},
+    {"D", take_support},
+    {"CE", take_tie},
+    {"CP", take_tie},
+    {"CERIG", take_tie},
+    {"RBE3", take_tie},
+    {"CEINTF", take_tie},
+    {"CSYS", take_system},
+    {"NGEN", NULL},
+    {"EGEN", NULL},
+    {"NROTAT", NULL},
+    {"NMODIF", NULL},
+    {"NSYM", NULL},
+    {"ESYM", NULL},
+    {"NSCALE", NULL},
+    {"TRANSFER", NULL},
+    {"NUMMRG", NULL},
+    {"NUMCMP", NULL},
+    {"*DO", NULL},
+    {"*REPEAT", NULL},
+    {"*USE", NULL},
+    {"/INPUT", NULL},
+    {"CDREAD", NULL},
+    {"VMESH", NULL},
+    {"AMESH", NULL},
+    {"LMESH", NULL},
+    {"DDELE", NULL},
+};
+
+static ritz_status take_command(ritz_cdb *all, const cdb_command *command)
+{
+    for (size_t k = 0; k < sizeof verbs / sizeof *verbs; k++) {
+        if (!is_word(command->field[0], verbs[k].name))
+            continue;
+        if (verbs[k].take)
+            return verbs[k].take(all, command);
+        return ritz_cdb_refuse(all, command->line,
+                               "'%s' changes the model by what Ritz does not "
+                               "evaluate: write it by CDWRITE",
+                               verbs[k].name);
+    }
+    return RITZ_OK;
+}
+
+static void cdb_free(ritz_cdb *all)
+{
+    RITZ_FREE(all->node, all->type, all->element, all->joined, all->support,
+              all->tie);
+    ritz_deck_reading_free(&all->reading);
+    ritz_deck_files_free(&all->files);
+}
+
+static ritz_status parse_cdb(const char *path, const char *bytes, int64_t size,
+                             const char *folder, ritz_deck *out)
+{
+    [[gnu::cleanup(cdb_free)]] ritz_cdb all = {0};
+    ritz_piece line = {"", 0};
+    int64_t number = 0;
+
+    all.reading.files = &all.files;
+    RITZ_CHECK(ritz_deck_begin(&all.reading, path, bytes, size, folder));
+    while (take_line(&all, &line, &number)) {
+        const ritz_piece text = ritz_piece_trim(line);
+        cdb_command command = {0};
+
+        if (text.length == 0 || text.text[0] == '!' || text.text[0] == '(')
+            continue;
+        split_command(text, number, &command);
+        RITZ_CHECK(take_command(&all, &command));
+    }
+    return ritz_cdb_build(&all, out);
+}
+
+/* A line near the beginning is a command that only such files have. */
+static bool is_cdb(const char *bytes, int64_t size)
+{
+    static const char *const words[] = {"/PREP7", "/COM", "/BATCH", "NBLOCK",
+                                        "EBLOCK"};
+    enum { LINES = 200 };
+    ritz_lines text = {.at = bytes, .end = bytes + size};
+
+    while (text.number < LINES && ritz_lines_next(&text)) {
+        cdb_command command = {0};
+
+        split_command(
+            ritz_piece_trim((ritz_piece){text.line, text.line_end - text.line}),
+            0, &command);
+        for (size_t k = 0; k < sizeof words / sizeof *words; k++)
+            if (is_word(command.field[0], words[k]))
+                return true;
+    }
+    return false;
+}
+
+const ritz_deck_format ritz_deck_cdb = {
+    .name = "cdb",
+    .title = "coded database of ANSYS",
+    .reference = "Ansys2024",
+    .recognise = is_cdb,
+    .parse = parse_cdb,
+};
