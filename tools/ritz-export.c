@@ -7,11 +7,33 @@ static void list_formats(void)
         printf("%-16s %-9s %-52s [%s]\n", (*e)->name, (*e)->kind, (*e)->summary,
                (*e)->reference);
     printf("\nreduced: a reduced component and, but for dmig and exudyn,\n"
-           "a system at a configuration (--at; for openfast and simscape "
+           "a system at a configuration (--at; for basilisk,\nopenfast and "
+           "simscape "
            "--component names its\nbodies), either of which --states makes "
            "a state space,\nor a state space.\nshapes: modes of a component, "
            "of a reduced component, or of a system, whose bodies\n--component "
            "names; but for uff, columns of a basis.\n");
+}
+
+/* Choose the exporter, and refuse options that it does not take. */
+static void settle_options(const cli_program *program, const char *to,
+                           export_options *given)
+{
+    const ritz_export_request *request = &given->request;
+
+    if (!to)
+        cli_refuse(program, "no format, name it with --to; --list shows all");
+    given->exporter = cli_choose(program, "format", to, ritz_exporters);
+    if (ritz_export_check(given->exporter, request) != RITZ_OK)
+        cli_refuse(program, "%s", ritz_error_message());
+    if (given->component.count > 0 &&
+        !(given->exporter->takes & (RITZ_EXPORT_SHAPES | RITZ_EXPORT_PORTS)))
+        cli_refuse(program,
+                   "--component is for shapes of a basis, and for shapes and "
+                   "ports of a system");
+    if (given->states && !(given->exporter->takes & RITZ_EXPORT_STATES))
+        cli_refuse(program, "%s takes no state space, --states is not for it",
+                   to);
 }
 
 int main(int argc, char **argv)
@@ -32,8 +54,8 @@ int main(int argc, char **argv)
         CLI_FLAG("numbered", &request->numbered,
                  "number continuations, as NASTRAN-95 wants them (dmig)"),
         CLI_TEXT("port", &request->ports, "NAME[,NAME]",
-                 "ports whose grids are the interface (openfast, openfast-4, "
-                 "simscape) [those attached]"),
+                 "ports whose grids are the interface (basilisk, openfast, "
+                 "openfast-4, simscape) [those attached]"),
         MODEL_OPTIONS(&given.model),
         CLI_FLAG("states", &given.states,
                  "write the states x' = A x + B u, y = C x + D u, with damping "
@@ -65,19 +87,7 @@ int main(int argc, char **argv)
     cli_run run;
 
     cli_parse(&program, options, argc, argv, &run);
-    if (!to)
-        cli_refuse(&program, "no format, name it with --to; --list shows all");
-    given.exporter = cli_choose(&program, "format", to, ritz_exporters);
-    if (ritz_export_check(given.exporter, request) != RITZ_OK)
-        cli_refuse(&program, "%s", ritz_error_message());
+    settle_options(&program, to, &given);
     request->output = run.output;
-    if (given.component.count > 0 &&
-        !(given.exporter->takes & (RITZ_EXPORT_SHAPES | RITZ_EXPORT_PORTS)))
-        cli_refuse(&program,
-                   "--component is for shapes of a basis, and for shapes and "
-                   "ports of a system");
-    if (given.states && !(given.exporter->takes & RITZ_EXPORT_STATES))
-        cli_refuse(&program, "%s takes no state space, --states is not for it",
-                   to);
     return cli_finish(&run, export_run(&run, &given));
 }

@@ -723,6 +723,12 @@
 /* Part of the first flexible frequency above which a rigid motion is held by
    the ground: matrices of six digits leave 1e-3 (their square root). */
 #define RITZ_HELD 1e-2
+/* Participation of a mode in translation or rotation, relative to that of the
+   whole body, below which it is none: its square is a mass of 1e-12. */
+#define RITZ_NO_PARTICIPATION 1e-6
+/* Cosine between the participations of a mode in translation and in rotation up
+   to which a mass on a spring stands for it. */
+#define RITZ_SKEW_PARTICIPATION 1e-6
 /* A loss of kinetic energy above this is reported: rounding of modes that 98
    columns make is 3e-9, measured. */
 #define RITZ_ENERGY_LOST 1e-6
