@@ -289,19 +289,22 @@ typedef struct ritz_inertia {
 
 /*
  * Inertia of the body in a moving frame, beyond M_r. R (n x 6) holds unit rigid
- * motions about the basic origin; T_b (g x r) the translations of the g grids
- * along basic axis b; X_b (g) their positions; m (g x g) is the nodal mass, a
- * third of the trace of each 3 x 3 block of M that joins translations.
+ * motions about the basic origin. A point of mass dm at x moves by v_k in
+ * column k of T, x_a and v_ka along basic axis a.
  *
- * The first two are of all of M. The others are exact where those blocks are
- * multiples of I3, as of solids and of lumped masses, and where no constraint
- * has moved mass to the rotations of what its dofs follow.
+ * The first two are of all of M. The integrals of the others are exact for what
+ * M, the places of grids and line cells tell: isoparametric solids, lumped mass,
+ * rigid bodies at grids, such as offset mass, straight beams with consistent
+ * mass (linear along the axis, cubic across) and all of these with grids that
+ * follow others rigidly. Of what is none of these, such as tapered or offset
+ * beams, what M shares with one of them is taken: then sum_a int v_ja v_ka is
+ * not M_r, and ritz-export states the kinetic energy that is lost.
  */
 typedef struct ritz_invariants {
     double rigid[36];    /* R'MR, symmetric */
     ritz_dense momentum; /* 6 x r, R'MT; {0}: none of this is known */
-    ritz_dense position; /* 3 x 3r, (a, b r + k) is X_a' m T_b(:,k) */
-    ritz_dense product;  /* 3r x 3r, (a r + j, b r + k) T_a(:,j)' m T_b(:,k) */
+    ritz_dense position; /* 3 x 3r, (a, b r + k) is int x_a v_kb dm */
+    ritz_dense product;  /* 3r x 3r, (a r + j, b r + k) is int v_ja v_kb dm */
 } ritz_invariants;
 
 /* Nine r x r matrices: of more columns than this they are not kept. */
@@ -398,7 +401,8 @@ ritz_status ritz_inertia_of(const ritz_component *component, ritz_inertia *out);
  * no grid has a position or there are more than RITZ_INVARIANT_COLUMNS.
  *
  * @param[in] T  n x r
- * @cost   O(r nnz + 4 n r^2), as much memory as T
+ * @cost   O(r nnz + 4 n r^2), 18 n r^2 where all grids are of beams; as much
+ *         memory as T, five times as much for beams
  */
 ritz_status ritz_invariants_of(const ritz_component *component,
                                const ritz_dense *T, ritz_invariants *out);

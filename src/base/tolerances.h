@@ -729,6 +729,10 @@
 /* Cosine between the participations of a mode in translation and in rotation up
    to which a mass on a spring stands for it. */
 #define RITZ_SKEW_PARTICIPATION 1e-6
+/* A block of M is that of a beam if it differs by no more than this part of its
+   terms of translations with rotations: above what single precision leaves of
+   them. Directions that two grids share are told apart by the same. */
+#define RITZ_BEAM_FITS 1e-6
 /* A loss of kinetic energy above this is reported: rounding of modes that 98
    columns make is 3e-9, measured. */
 #define RITZ_ENERGY_LOST 1e-6

@@ -1,0 +1,503 @@
+/* Beams with consistent mass in inertia invariants: see the header. */
+#include "model/invariants_beams.h"
+
+#include "base/alloc.h"
+#include "base/search.h"
+#include "base/team.h"
+#include "base/tolerances.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double dot(const double *a, const double *b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+double ritz_shared_directions(const double *axes_i, const int64_t *row_i,
+                              const double *axes_j, const int64_t *row_j)
+{
+    double sum = 0.0;
+
+    for (int64_t p = 0; p < 3; p++)
+        for (int64_t q = 0; q < 3; q++)
+            if (row_i[p] >= 0 && row_j[q] >= 0) {
+                const double cosine = dot(axes_i + 3 * p, axes_j + 3 * q);
+
+                sum += cosine * cosine;
+            }
+    return fmax(sum, 1.0);
+}
+
+/* ---- pairs of nodes ----------------------------------------------------- */
+
+static int compare_nodes(const void *left, const void *right)
+{
+    const ritz_beam *a = left;
+    const ritz_beam *b = right;
+
+    for (int k = 0; k < 2; k++)
+        if (a->node[k] != b->node[k])
+            return a->node[k] < b->node[k] ? -1 : 1;
+    return 0;
+}
+
+/* Index of a grid among the nodes, which ascend as grids do; -1: none. */
+static int64_t find_node(const ritz_nodes *nodes, int64_t id)
+{
+    const int64_t grid = ritz_grids_find(nodes->grids, id);
+
+    return grid < 0 ? -1 : ritz_search(nodes->count, nodes->grid, grid);
+}
+
+/* Axis and length, and what is known of the nodes; false if it has no length. */
+static bool lay_out(const ritz_nodes *nodes, const int64_t *row,
+                    ritz_beam *beam)
+{
+    const double *x[2];
+    double square = 0.0;
+
+    for (int k = 0; k < 2; k++) {
+        x[k] = nodes->grids->position + 3 * nodes->grid[beam->node[k]];
+        beam->axes[k] = ritz_nodes_axes(nodes, beam->node[k]);
+        memcpy(beam->row[k], row + 6 * beam->node[k], sizeof beam->row[k]);
+    }
+    for (int a = 0; a < 3; a++) {
+        beam->e[a] = x[1][a] - x[0][a];
+        square += beam->e[a] * beam->e[a];
+    }
+    beam->L = sqrt(square);
+    for (int a = 0; a < 3; a++)
+        beam->e[a] /= beam->L;
+    return beam->L > 0.0;
+}
+
+/* Sort pairs and keep each once, of those that have a length. */
+static void order_pairs(const ritz_nodes *nodes, const int64_t *row,
+                        ritz_beams *list)
+{
+    int64_t kept = 0;
+
+    if (list->count > 0)
+        qsort(list->beam, (size_t)list->count, sizeof *list->beam,
+              compare_nodes);
+    for (int64_t k = 0; k < list->count; k++) {
+        if (kept > 0 &&
+            compare_nodes(&list->beam[kept - 1], &list->beam[k]) == 0)
+            continue;
+        list->beam[kept] = list->beam[k];
+        kept += lay_out(nodes, row, &list->beam[kept]);
+    }
+    list->count = kept;
+}
+
+ritz_status ritz_beams_list(const ritz_elements *elements,
+                            const ritz_nodes *nodes, const int64_t *row,
+                            ritz_beams *out)
+{
+    RITZ_OWN(ritz_beams) list = {0};
+    int64_t lines = 0;
+
+    for (int64_t k = 0; k < elements->count; k++)
+        lines += elements->kind[k] == RITZ_CELL_LINE;
+    RITZ_CHECK_NEW(list.beam, lines);
+    for (int64_t k = 0; k < elements->count; k++) {
+        const int64_t *grid = elements->grid + elements->first[k];
+        int64_t i = -1;
+        int64_t j = -1;
+
+        if (elements->kind[k] != RITZ_CELL_LINE)
+            continue;
+        i = find_node(nodes, grid[0]);
+        j = find_node(nodes, grid[1]);
+        if (i >= 0 && j >= 0 && i != j)
+            list.beam[list.count++] =
+                (ritz_beam){.node = {i < j ? i : j, i < j ? j : i}};
+    }
+    order_pairs(nodes, row, &list);
+    RITZ_MOVE(*out, list);
+    return RITZ_OK;
+}
+
+ritz_beam *ritz_beams_find(const ritz_beams *beams, int64_t i, int64_t j)
+{
+    const ritz_beam wanted = {.node = {i < j ? i : j, i < j ? j : i}};
+
+    if (beams->count == 0)
+        return NULL;
+    return bsearch(&wanted, beams->beam, (size_t)beams->count,
+                   sizeof *beams->beam, compare_nodes);
+}
+
+void ritz_beams_keep(ritz_beams *beams)
+{
+    int64_t kept = 0;
+
+    for (int64_t k = 0; k < beams->count; k++)
+        if (beams->beam[k].mu > 0.0)
+            beams->beam[kept++] = beams->beam[k];
+    beams->count = kept;
+}
+
+void ritz_beams_free(ritz_beams *beams)
+{
+    free(beams->beam);
+    *beams = (ritz_beams){0};
+}
+
+/* ---- integrals of the shape functions ----------------------------------- */
+
+enum { ALONG, ACROSS, SLOPE, FUNCTIONS }; /* n, H, K */
+
+/* Integrals over xi, times 420, of functions f_1 and f_2 of both ends. */
+static const double integral[FUNCTIONS][FUNCTIONS][2][2] = {
+    [ALONG] = {{{140, 70}, {70, 140}},
+               {{147, 63}, {63, 147}},
+               {{21, -14}, {14, -21}}},
+    [ACROSS] = {{{147, 63}, {63, 147}},
+                {{156, 54}, {54, 156}},
+                {{22, -13}, {13, -22}}},
+    [SLOPE] = {{{21, 14}, {-14, -21}},
+               {{22, 13}, {-13, -22}},
+               {{4, -3}, {-3, 4}}},
+};
+
+static double term(const ritz_beam *beam, int f, int i, int g, int j)
+{
+    return beam->mu * integral[f][g][i][j] / 420.0;
+}
+
+/* ---- whether a pair is a beam ------------------------------------------- */
+
+/* Parts of the block, rotations times L. */
+enum { COUPLING, BENDING, TORSION, AXIS, EVEN, PARTS };
+
+/* A part along basic axes, for unit mass, rows of the node from which e leads
+   to the other. */
+static void fill_part(int part, const double *e, double B[6][6])
+{
+    for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++) {
+            const double unit = a == b ? 1.0 : 0.0;
+            const double axis = e[a] * e[b];
+            const double skew = a == b             ? 0.0
+                                : (b + 1) % 3 == a ? e[3 - a - b]
+                                                   : -e[3 - a - b];
+
+            B[a][b] = part == BENDING ? 54.0 / 420.0 * (unit - axis)
+                      : part == AXIS  ? axis
+                      : part == EVEN  ? unit
+                                      : 0.0;
+            B[a][3 + b] = B[3 + a][b] =
+                part == COUPLING ? 13.0 / 420.0 * skew : 0.0;
+            B[3 + a][3 + b] = part == BENDING   ? -3.0 / 420.0 * (unit - axis)
+                              : part == TORSION ? axis
+                                                : 0.0;
+        }
+}
+
+/* From basic axes to those of the nodes, 0 where a dof is absent. */
+static void turn_block(const ritz_beam *beam, int column, const double B[6][6],
+                       double out[36])
+{
+    const int i = 1 - column;
+
+    for (int64_t p = 0; p < 6; p++)
+        for (int64_t q = 0; q < 6; q++) {
+            const double *ap = beam->axes[i] + 3 * (p % 3);
+            const double *aq = beam->axes[column] + 3 * (q % 3);
+            double sum = 0.0;
+
+            if (beam->row[i][p] >= 0 && beam->row[column][q] >= 0)
+                for (int64_t a = 0; a < 3; a++)
+                    sum += ap[a] * dot(&B[p / 3 * 3 + a][q / 3 * 3], aq);
+            out[6 * p + q] = sum;
+        }
+}
+
+static double dot_blocks(const double *A, const double *B)
+{
+    double sum = 0.0;
+
+    for (int k = 0; k < 36; k++)
+        sum += A[k] * B[k];
+    return sum;
+}
+
+static void take_out(double factor, const double *part, double *block)
+{
+    for (int k = 0; k < 36; k++)
+        block[k] -= factor * part[k];
+}
+
+/* The factor of a part in a block, in the sense of least squares. */
+static double factor_of(const double *part, const double *block)
+{
+    const double square = dot_blocks(part, part);
+
+    return square > 0.0 ? dot_blocks(part, block) / square : 0.0;
+}
+
+/*
+ * Take a e e' + d I out of translations; a. Where the nodes share no direction
+ * along the axis, a is that of the shape functions, and where they share no
+ * other, d is 0.
+ */
+static double take_even(const double *axis, const double *even, double mu,
+                        double *block)
+{
+    const double aa = dot_blocks(axis, axis);
+    const double ad = dot_blocks(axis, even);
+    const double dd = dot_blocks(even, even);
+    const double ab = dot_blocks(axis, block);
+    const double db = dot_blocks(even, block);
+    const double det = aa * dd - ad * ad;
+    double a = mu * integral[ALONG][ALONG][0][1] / 420.0;
+    double d = 0.0;
+
+    if (det > RITZ_BEAM_FITS * aa * dd) {
+        a = (dd * ab - ad * db) / det;
+        d = (aa * db - ad * ab) / det;
+    } else if (aa > RITZ_BEAM_FITS * dd) {
+        a = ab / aa;
+    } else if (dd > 0.0) {
+        d = db / dd;
+    }
+    take_out(a, axis, block);
+    take_out(d, even, block);
+    return a;
+}
+
+/* The block with rotations times L. */
+static void scale_block(const double *block, double L, double out[36])
+{
+    for (int k = 0; k < 36; k++)
+        out[k] = block[k] / ((k / 6 < 3 ? 1.0 : L) * (k % 6 < 3 ? 1.0 : L));
+}
+
+void ritz_beam_fit(int column, const double block[static 36], ritz_beam *beam)
+{
+    double part[PARTS][36], rest[36];
+    double e[3], mu = 0.0, size = 0.0, axial = 0.0;
+
+    /* the block of the other node's columns is that of the beam seen from the
+       other end */
+    for (int a = 0; a < 3; a++)
+        e[a] = column == 1 ? beam->e[a] : -beam->e[a];
+    for (int k = 0; k < PARTS; k++) {
+        double B[6][6];
+
+        fill_part(k, e, B);
+        turn_block(beam, column, B, part[k]);
+    }
+    scale_block(block, beam->L, rest);
+    mu = factor_of(part[COUPLING], rest);
+    if (!(mu > 0.0))
+        return;
+    size = mu * sqrt(dot_blocks(part[COUPLING], part[COUPLING]));
+    take_out(mu, part[COUPLING], rest);
+    take_out(mu, part[BENDING], rest);
+    take_out(factor_of(part[TORSION], rest), part[TORSION], rest);
+    axial = take_even(part[AXIS], part[EVEN], mu, rest);
+    if (sqrt(dot_blocks(rest, rest)) > RITZ_BEAM_FITS * size)
+        return;
+    beam->mu = mu;
+    beam->axial = axial;
+    beam->known[column] = true;
+}
+
+/* ---- what the mean form lacks ------------------------------------------- */
+
+/* The term of s_i with s_j: half of the mass belongs to each s_j. */
+static double axial_term(const ritz_beam *beam, int i, int j)
+{
+    return i == j ? beam->mu / 2.0 - beam->axial : beam->axial;
+}
+
+/* The m that the block i, j of the beam alone gives: a third of the trace of
+   `along` e e' + `across` (I - e e') if the nodes are whole. */
+static double mean_term(const ritz_beam *beam, int i, int j)
+{
+    const double across = term(beam, ACROSS, i, ACROSS, j);
+    const double along = axial_term(beam, i, j);
+    double even = 0.0;
+    double axis = 0.0;
+
+    for (int64_t p = 0; p < 3; p++)
+        for (int64_t q = 0; q < 3; q++) {
+            const double *ap = beam->axes[i] + 3 * p;
+            const double *aq = beam->axes[j] + 3 * q;
+            const double cosine = dot(ap, aq);
+
+            if (beam->row[i][p] < 0 || beam->row[j][q] < 0)
+                continue;
+            even += cosine * cosine;
+            axis += dot(beam->e, ap) * dot(beam->e, aq) * cosine;
+        }
+    return (across * even + (along - across) * axis) / fmax(even, 1.0);
+}
+
+/*
+ * C of one beam, in the order of the rows of S. Of the integrals of
+ *
+ *     (e n_i s_i + H_i l_i + L K_i t_i)_a (e n_j s_j + H_j l_j + L K_j t_j)_b
+ *
+ * the mean form has m (s_i + l_i)_a (s_j + l_j)_b, the terms of l and s with t
+ * as those of l with t, and t with t.
+ */
+static void fill_weights(const ritz_beam *beam, double C[6][6])
+{
+    memset(C, 0, 36 * sizeof C[0][0]);
+    for (int j = 0; j < 2; j++)
+        for (int i = 0; i < 2 && beam->known[j]; i++) {
+            const double m = mean_term(beam, i, j);
+
+            C[i][j] = axial_term(beam, i, j) - m;
+            C[i][2 + j] = term(beam, ALONG, i, ACROSS, j) - m;
+            C[2 + i][j] = term(beam, ACROSS, i, ALONG, j) - m;
+            C[2 + i][2 + j] = term(beam, ACROSS, i, ACROSS, j) - m;
+            C[i][4 + j] = beam->L * (term(beam, ALONG, i, SLOPE, j) -
+                                     term(beam, ACROSS, i, SLOPE, j));
+            C[4 + i][j] = beam->L * (term(beam, SLOPE, i, ALONG, j) -
+                                     term(beam, SLOPE, i, ACROSS, j));
+        }
+}
+
+/* Factors of the six dofs of node i in e_a s_i, l_ia and t_ia. */
+static void fill_factors(const ritz_beam *beam, int i, int a, double out[3][6])
+{
+    const double *e = beam->e;
+    const int b = (a + 1) % 3;
+    const int c = (a + 2) % 3;
+
+    memset(out, 0, 18 * sizeof out[0][0]);
+    for (int64_t p = 0; p < 3; p++) {
+        const double *axis = beam->axes[i] + 3 * p;
+
+        out[0][p] = e[a] * dot(e, axis);
+        out[1][p] = axis[a] - out[0][p];
+        out[2][3 + p] = axis[b] * e[c] - axis[c] * e[b];
+    }
+}
+
+typedef struct beams_task {
+    const ritz_beams *beams;
+    const ritz_dense *in;
+    int a;
+    ritz_dense *out;
+} beams_task;
+
+static void take_along(int thread, int64_t from, int64_t to, void *task)
+{
+    const beams_task *t = task;
+
+    (void)thread;
+    for (int64_t n = 0; n < 2 * t->beams->count; n++) {
+        const ritz_beam *beam = &t->beams->beam[n / 2];
+        const int i = (int)(n % 2);
+        double factor[3][6];
+
+        fill_factors(beam, i, t->a, factor);
+        for (int64_t k = from; k < to; k++) {
+            const double *u = ritz_dense_col(t->in, k);
+            double *S = ritz_dense_col(t->out, k) + n / 2 * 6 + i;
+
+            for (int p = 0; p < 6; p++)
+                if (beam->row[i][p] >= 0)
+                    for (int64_t part = 0; part < 3; part++)
+                        S[2 * part] += factor[part][p] * u[beam->row[i][p]];
+        }
+    }
+}
+
+static void take_weighed(int thread, int64_t from, int64_t to, void *task)
+{
+    const beams_task *t = task;
+
+    (void)thread;
+    for (int64_t n = 0; n < t->beams->count; n++) {
+        double C[6][6];
+
+        fill_weights(&t->beams->beam[n], C);
+        for (int64_t k = from; k < to; k++) {
+            const double *S = ritz_dense_col(t->in, k) + 6 * n;
+            double *CS = ritz_dense_col(t->out, k) + 6 * n;
+
+            for (int i = 0; i < 6; i++)
+                for (int j = 0; j < 6; j++)
+                    CS[i] += C[i][j] * S[j];
+        }
+    }
+}
+
+static ritz_status run(ritz_team_range *work, beams_task task, ritz_dense *out)
+{
+    enum { WORTHWHILE = 50000 }; /* entries of `out` for each further thread */
+    RITZ_OWN(ritz_dense) made = {0};
+    const int64_t count = 6 * task.beams->count;
+
+    RITZ_CHECK(ritz_dense_new(count, task.in->ncol, &made));
+    task.out = &made;
+    ritz_team_over(ritz_team_ready(1 + count * made.ncol / WORTHWHILE),
+                   made.ncol, work, &task);
+    RITZ_MOVE(*out, made);
+    return RITZ_OK;
+}
+
+ritz_status ritz_beams_along(const ritz_beams *beams, const ritz_dense *T,
+                             int a, ritz_dense *out)
+{
+    return run(take_along, (beams_task){beams, T, a, NULL}, out);
+}
+
+ritz_status ritz_beams_weigh(const ritz_beams *beams, const ritz_dense *S,
+                             ritz_dense *out)
+{
+    return run(take_weighed, (beams_task){beams, S, 0, NULL}, out);
+}
+
+/*
+ * The place of a point of the beam is its motion with u_i = x_i and t_i = 0,
+ * so that C is applied to that. The mean form adds to x_i the arms of t_i, here
+ * e_a L K_i, whose integrals with the motion are taken out again.
+ */
+static void fill_places(const ritz_beam *beam, const ritz_nodes *nodes, int a,
+                        double *at, double *arm)
+{
+    const double e = beam->e[a];
+    const double L = beam->L;
+
+    for (int j = 0; j < 2; j++) {
+        const double *x =
+            nodes->grids->position + 3 * nodes->grid[beam->node[j]];
+        const double s = e * dot(beam->e, x);
+
+        at[j] = s;
+        at[2 + j] = x[a] - s;
+        for (int i = 0; i < 2 && beam->known[j]; i++) {
+            arm[j] -= e * L * term(beam, SLOPE, i, ACROSS, j);
+            arm[4 + j] -= e * L * L * term(beam, SLOPE, i, SLOPE, j);
+        }
+        arm[2 + j] = arm[j];
+    }
+}
+
+ritz_status ritz_beams_place(const ritz_beams *beams, const ritz_nodes *nodes,
+                             const ritz_dense *S, const ritz_dense *CS,
+                             ritz_dense *out)
+{
+    RITZ_OWN(ritz_dense) at = {0}, arm = {0}, more = {0};
+
+    RITZ_CHECK(ritz_dense_new(6 * beams->count, 3, &at));
+    RITZ_CHECK(ritz_dense_new(6 * beams->count, 3, &arm));
+    for (int a = 0; a < 3; a++)
+        for (int64_t n = 0; n < beams->count; n++)
+            fill_places(&beams->beam[n], nodes, a,
+                        ritz_dense_col(&at, a) + 6 * n,
+                        ritz_dense_col(&arm, a) + 6 * n);
+    RITZ_CHECK(ritz_dense_mul_tn(&at, CS, out));
+    RITZ_CHECK(ritz_dense_mul_tn(&arm, S, &more));
+    ritz_dense_add(1.0, &more, out);
+    return RITZ_OK;
+}
