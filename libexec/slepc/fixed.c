@@ -369,7 +369,8 @@ static ritz_status work_together(const task *t, const char *path,
           ritz_ascending_index);
     for (int64_t j = 0; j < b->count; j++)
         position[ritz_search(b->count, sorted.at, b->at[j])] = j;
-    w.frame = (rows_frame){path, t->num_dofs, b->count, sorted.at, position};
+    w.frame =
+        (rows_frame){path, t->num_dofs, b->count, sorted.at, position, NULL};
     ritz_monitor_step("matrices", 0, 0);
     RITZ_CHECK(rows_read(&w.frame, &w.rows));
     if (w.rows.interior > 0)

@@ -7,7 +7,8 @@
  * K_p has entries in few rows, those of the rank's dofs and their neighbours.
  * The rank needs no other rows of T, which it gets from rank 0. As K is
  * symmetric, the rank's columns are used as rows: sums of K T with twice the
- * digits are then complete in one rank.
+ * digits are then complete in one rank. A rank has all dofs of a grid, as the
+ * inertia invariants of beams are made from whole blocks of M.
  */
 #include "projection.h"
 
@@ -53,7 +54,8 @@ typedef struct share {
     bool symmetric[MATRICES];
     ritz_dofs rows;      /* dofs of the part, ascending; at least one */
     int64_t *place;      /* of each dof among `rows` */
-    ritz_component part; /* matrices with these rows; grids are borrowed */
+    ritz_component part; /* matrices with these rows; grids and elements are
+                            borrowed */
     ritz_dense T;        /* their rows of T */
 } share;
 
@@ -65,6 +67,7 @@ static void share_free(share *s)
     ritz_dense_free(&s->T);
     RITZ_FREE(s->place);
     s->part.grids = (ritz_grids){0};
+    s->part.elements = (ritz_elements){0};
     ritz_component_free(&s->part);
 }
 
@@ -150,8 +153,8 @@ static void mark_touched(const share *s, bool *mark)
     }
 }
 
-/* Mark all dofs of each grid of which one is marked: the mass that joins two
-   grids is a mean over their translations, and needs all of these. */
+/* Mark all dofs of each grid of which one is marked: which directions two grids
+   share decides the mass that joins them. */
 static ritz_status mark_grids(const share *s, bool *mark)
 {
     const ritz_grids *grids = &s->component->grids;
@@ -227,6 +230,7 @@ static ritz_status make_part(share *s)
     RITZ_CHECK(choose_rows(s));
     s->part.num_dofs = s->rows.count;
     s->part.grids = s->component->grids;
+    s->part.elements = s->component->elements;
     RITZ_CHECK_NEW(s->part.dof, s->rows.count);
     for (int64_t i = 0; i < s->rows.count; i++)
         s->part.dof[i] = s->component->dof[s->rows.at[i]];
@@ -351,7 +355,8 @@ static ritz_status work_together(const projection_task *t, const char *path,
     RITZ_OWN(share)
     s = {.task = t,
          .component = component,
-         .frame = {.path = path, .num_dofs = t->num_dofs}};
+         .frame = {
+             .path = path, .num_dofs = t->num_dofs, .dof = component->dof}};
     RITZ_OWN(ritz_congruences) sums = {0};
     bool twofold = false;
 

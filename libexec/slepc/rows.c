@@ -12,8 +12,14 @@
 
 int64_t rows_first_dof(const rows_frame *f, int rank)
 {
-    return f->num_dofs / ranks_count() * rank +
-           f->num_dofs % ranks_count() * rank / ranks_count();
+    int64_t first = f->num_dofs / ranks_count() * rank +
+                    f->num_dofs % ranks_count() * rank / ranks_count();
+
+    while (f->dof && first > 0 && first < f->num_dofs &&
+           f->dof[first].component > 0 &&
+           f->dof[first].grid == f->dof[first - 1].grid)
+        first++;
+    return first;
 }
 
 /*
