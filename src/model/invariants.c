@@ -202,6 +202,8 @@ static ritz_status find_products(const motion *of, int b, ritz_invariants *out)
     RITZ_CHECK(find_product(of, b, &v, &P));
     ritz_dense_symmetrise(&P);
     ritz_dense_put(&P, b * r, b * r, &out->product);
+    ritz_dense_free(&v.u);
+    ritz_dense_free(&v.S);
     for (int a = 0; a < b; a++) {
         ritz_dense_free(&P);
         RITZ_CHECK(find_product(of, a, &v, &P));

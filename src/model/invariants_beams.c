@@ -23,7 +23,9 @@ double ritz_shared_directions(const double *axes_i, const int64_t *row_i,
     for (int64_t p = 0; p < 3; p++)
         for (int64_t q = 0; q < 3; q++)
             if (row_i[p] >= 0 && row_j[q] >= 0) {
-                const double cosine = dot(axes_i + 3 * p, axes_j + 3 * q);
+                const double cosine = axes_i == axes_j
+                                          ? (double)(p == q)
+                                          : dot(axes_i + 3 * p, axes_j + 3 * q);
 
                 sum += cosine * cosine;
             }
@@ -43,37 +45,31 @@ static int compare_nodes(const void *left, const void *right)
     return 0;
 }
 
-/* Index of a grid among the nodes, which ascend as grids do; -1: none. */
-static int64_t find_node(const ritz_nodes *nodes, int64_t id)
-{
-    const int64_t grid = ritz_grids_find(nodes->grids, id);
-
-    return grid < 0 ? -1 : ritz_search(nodes->count, nodes->grid, grid);
-}
-
-/* Axis and length, and what is known of the nodes; false if it has no length. */
-static bool lay_out(const ritz_nodes *nodes, const int64_t *row,
+/* Axis and length, and what is known of the nodes. */
+static void lay_out(const ritz_nodes *nodes, const int64_t *row,
                     ritz_beam *beam)
 {
-    const double *x[2];
+    const double *x = nodes->grids->position;
     double square = 0.0;
 
     for (int k = 0; k < 2; k++) {
-        x[k] = nodes->grids->position + 3 * nodes->grid[beam->node[k]];
-        beam->axes[k] = ritz_nodes_axes(nodes, beam->node[k]);
-        memcpy(beam->row[k], row + 6 * beam->node[k], sizeof beam->row[k]);
+        const int64_t node = beam->node[k];
+
+        beam->axes[k] = ritz_nodes_axes(nodes, node < 0 ? beam->node[1] : node);
+        for (int p = 0; p < 6; p++)
+            beam->row[k][p] = node < 0 ? -1 : row[6 * node + p];
     }
     for (int a = 0; a < 3; a++) {
-        beam->e[a] = x[1][a] - x[0][a];
+        beam->e[a] = x[3 * beam->grid[1] + a] - x[3 * beam->grid[0] + a];
         square += beam->e[a] * beam->e[a];
     }
     beam->L = sqrt(square);
     for (int a = 0; a < 3; a++)
         beam->e[a] /= beam->L;
-    return beam->L > 0.0;
 }
 
-/* Sort pairs and keep each once, of those that have a length. */
+/* Sort pairs and keep each once, of those that have a length. A node that
+   several cells join to held grids is left out: its block is a sum. */
 static void order_pairs(const ritz_nodes *nodes, const int64_t *row,
                         ritz_beams *list)
 {
@@ -83,13 +79,45 @@ static void order_pairs(const ritz_nodes *nodes, const int64_t *row,
         qsort(list->beam, (size_t)list->count, sizeof *list->beam,
               compare_nodes);
     for (int64_t k = 0; k < list->count; k++) {
-        if (kept > 0 &&
-            compare_nodes(&list->beam[kept - 1], &list->beam[k]) == 0)
+        ritz_beam *last = kept > 0 ? &list->beam[kept - 1] : NULL;
+
+        if (last && compare_nodes(last, &list->beam[k]) == 0) {
+            if (last->grid[0] != list->beam[k].grid[0])
+                last->L = 0.0;
             continue;
+        }
+        if (last && !(last->L > 0.0))
+            kept--;
         list->beam[kept] = list->beam[k];
-        kept += lay_out(nodes, row, &list->beam[kept]);
+        lay_out(nodes, row, &list->beam[kept++]);
     }
+    if (kept > 0 && !(list->beam[kept - 1].L > 0.0))
+        kept--;
     list->count = kept;
+}
+
+/* Note the pair of a line cell if one of its grids has dofs. */
+static void add_pair(const ritz_nodes *nodes, const int64_t *id,
+                     ritz_beams *list)
+{
+    ritz_beam beam = {0};
+    int64_t node[2];
+    int64_t grid[2];
+    int first = 0;
+
+    for (int k = 0; k < 2; k++) {
+        grid[k] = ritz_grids_find(nodes->grids, id[k]);
+        node[k] =
+            grid[k] < 0 ? -1 : ritz_search(nodes->count, nodes->grid, grid[k]);
+    }
+    if (grid[0] < 0 || grid[1] < 0 || node[0] == node[1])
+        return;
+    first = node[0] < node[1] ? 0 : 1;
+    for (int k = 0; k < 2; k++) {
+        beam.node[k] = node[k == 0 ? first : 1 - first];
+        beam.grid[k] = grid[k == 0 ? first : 1 - first];
+    }
+    list->beam[list->count++] = beam;
 }
 
 ritz_status ritz_beams_list(const ritz_elements *elements,
@@ -102,19 +130,9 @@ ritz_status ritz_beams_list(const ritz_elements *elements,
     for (int64_t k = 0; k < elements->count; k++)
         lines += elements->kind[k] == RITZ_CELL_LINE;
     RITZ_CHECK_NEW(list.beam, lines);
-    for (int64_t k = 0; k < elements->count; k++) {
-        const int64_t *grid = elements->grid + elements->first[k];
-        int64_t i = -1;
-        int64_t j = -1;
-
-        if (elements->kind[k] != RITZ_CELL_LINE)
-            continue;
-        i = find_node(nodes, grid[0]);
-        j = find_node(nodes, grid[1]);
-        if (i >= 0 && j >= 0 && i != j)
-            list.beam[list.count++] =
-                (ritz_beam){.node = {i < j ? i : j, i < j ? j : i}};
-    }
+    for (int64_t k = 0; k < elements->count; k++)
+        if (elements->kind[k] == RITZ_CELL_LINE)
+            add_pair(nodes, elements->grid + elements->first[k], &list);
     order_pairs(nodes, row, &list);
     RITZ_MOVE(*out, list);
     return RITZ_OK;
@@ -173,47 +191,67 @@ static double term(const ritz_beam *beam, int f, int i, int g, int j)
 /* Parts of the block, rotations times L. */
 enum { COUPLING, BENDING, TORSION, AXIS, EVEN, PARTS };
 
-/* A part along basic axes, for unit mass, rows of the node from which e leads
-   to the other. */
-static void fill_part(int part, const double *e, double B[6][6])
+/*
+ * A part along basic axes, for unit mass, of the rows of node i and the columns
+ * of node j; e leads from i to the other node.
+ */
+static void fill_part(int part, bool own, const double *e, double B[6][6])
 {
+    const double u = part != BENDING ? 0.0 : own ? 156.0 : 54.0;
+    const double t = part != BENDING ? 0.0 : own ? 4.0 : -3.0;
+    const double tu = part != COUPLING ? 0.0 : own ? 22.0 : 13.0;
+    const double ut = own ? -tu : tu;
+
     for (int a = 0; a < 3; a++)
         for (int b = 0; b < 3; b++) {
             const double unit = a == b ? 1.0 : 0.0;
             const double axis = e[a] * e[b];
-            const double skew = a == b             ? 0.0
-                                : (b + 1) % 3 == a ? e[3 - a - b]
-                                                   : -e[3 - a - b];
+            double skew = 0.0;
 
-            B[a][b] = part == BENDING ? 54.0 / 420.0 * (unit - axis)
-                      : part == AXIS  ? axis
-                      : part == EVEN  ? unit
-                                      : 0.0;
-            B[a][3 + b] = B[3 + a][b] =
-                part == COUPLING ? 13.0 / 420.0 * skew : 0.0;
-            B[3 + a][3 + b] = part == BENDING   ? -3.0 / 420.0 * (unit - axis)
-                              : part == TORSION ? axis
-                                                : 0.0;
+            if (a != b)
+                skew = (b + 1) % 3 == a ? e[3 - a - b] : -e[3 - a - b];
+            B[a][b] = u / 420.0 * (unit - axis);
+            B[3 + a][3 + b] = t / 420.0 * (unit - axis);
+            B[a][3 + b] = ut / 420.0 * skew;
+            B[3 + a][b] = tu / 420.0 * skew;
+            if (part == AXIS || part == EVEN)
+                B[a][b] = part == AXIS ? axis : unit;
+            if (part == TORSION)
+                B[3 + a][3 + b] = axis;
         }
 }
 
-/* From basic axes to those of the nodes, 0 where a dof is absent. */
-static void turn_block(const ritz_beam *beam, int column, const double B[6][6],
-                       double out[36])
+/* From basic axes to those of nodes i and j, 0 where a dof is absent. */
+static void turn_block(const ritz_beam *beam, int i, int j,
+                       const double B[6][6], double out[36])
 {
-    const int i = 1 - column;
-
     for (int64_t p = 0; p < 6; p++)
         for (int64_t q = 0; q < 6; q++) {
             const double *ap = beam->axes[i] + 3 * (p % 3);
-            const double *aq = beam->axes[column] + 3 * (q % 3);
+            const double *aq = beam->axes[j] + 3 * (q % 3);
             double sum = 0.0;
 
-            if (beam->row[i][p] >= 0 && beam->row[column][q] >= 0)
+            if (beam->row[i][p] >= 0 && beam->row[j][q] >= 0)
                 for (int64_t a = 0; a < 3; a++)
                     sum += ap[a] * dot(&B[p / 3 * 3 + a][q / 3 * 3], aq);
             out[6 * p + q] = sum;
         }
+}
+
+/* All parts of the block i, j, along the axes of its nodes. */
+static void fill_parts(const ritz_beam *beam, int i, int j,
+                       double part[PARTS][36])
+{
+    double e[3];
+
+    for (int a = 0; a < 3; a++)
+        e[a] = i == 0 ? beam->e[a] : -beam->e[a];
+    for (int k = 0; k < PARTS; k++) {
+        double B[6][6];
+
+        fill_part(k, i == j, e, B);
+        turn_block(beam, i, j, B, part[k]);
+    }
 }
 
 static double dot_blocks(const double *A, const double *B)
@@ -241,10 +279,9 @@ static double factor_of(const double *part, const double *block)
 
 /*
  * Take a e e' + d I out of translations; a. Where the nodes share no direction
- * along the axis, a is that of the shape functions, and where they share no
- * other, d is 0.
+ * along the axis, a stays as given, and where they share no other, d is 0.
  */
-static double take_even(const double *axis, const double *even, double mu,
+static double take_even(const double *axis, const double *even, double a,
                         double *block)
 {
     const double aa = dot_blocks(axis, axis);
@@ -253,7 +290,6 @@ static double take_even(const double *axis, const double *even, double mu,
     const double ab = dot_blocks(axis, block);
     const double db = dot_blocks(even, block);
     const double det = aa * dd - ad * ad;
-    double a = mu * integral[ALONG][ALONG][0][1] / 420.0;
     double d = 0.0;
 
     if (det > RITZ_BEAM_FITS * aa * dd) {
@@ -269,50 +305,80 @@ static double take_even(const double *axis, const double *even, double mu,
     return a;
 }
 
-/* The block with rotations times L. */
-static void scale_block(const double *block, double L, double out[36])
+/* Factor of entry k of a block where rotations are multiplied by L. */
+static double scale_of(const ritz_beam *beam, int k)
 {
-    for (int k = 0; k < 36; k++)
-        out[k] = block[k] / ((k / 6 < 3 ? 1.0 : L) * (k % 6 < 3 ? 1.0 : L));
+    return (k / 6 < 3 ? 1.0 : 1.0 / beam->L) *
+           (k % 6 < 3 ? 1.0 : 1.0 / beam->L);
 }
 
-void ritz_beam_fit(int column, const double block[static 36], ritz_beam *beam)
+/* Whether the block i, j is that of a beam: its mass, and in `axial` its term
+   of s_i with s_j; else 0. */
+static double fit_block(const ritz_beam *beam, int i, int j,
+                        const double *block, double *axial)
 {
     double part[PARTS][36], rest[36];
-    double e[3], mu = 0.0, size = 0.0, axial = 0.0;
+    double mu = 0.0, size = 0.0;
 
-    /* the block of the other node's columns is that of the beam seen from the
-       other end */
-    for (int a = 0; a < 3; a++)
-        e[a] = column == 1 ? beam->e[a] : -beam->e[a];
-    for (int k = 0; k < PARTS; k++) {
-        double B[6][6];
-
-        fill_part(k, e, B);
-        turn_block(beam, column, B, part[k]);
-    }
-    scale_block(block, beam->L, rest);
+    fill_parts(beam, i, j, part);
+    for (int k = 0; k < 36; k++)
+        rest[k] = block[k] * scale_of(beam, k);
     mu = factor_of(part[COUPLING], rest);
     if (!(mu > 0.0))
-        return;
+        return 0.0;
     size = mu * sqrt(dot_blocks(part[COUPLING], part[COUPLING]));
     take_out(mu, part[COUPLING], rest);
     take_out(mu, part[BENDING], rest);
     take_out(factor_of(part[TORSION], rest), part[TORSION], rest);
-    axial = take_even(part[AXIS], part[EVEN], mu, rest);
-    if (sqrt(dot_blocks(rest, rest)) > RITZ_BEAM_FITS * size)
+    *axial = take_even(part[AXIS], part[EVEN],
+                       mu * integral[ALONG][ALONG][i][j] / 420.0, rest);
+    return sqrt(dot_blocks(rest, rest)) > RITZ_BEAM_FITS * size ? 0.0 : mu;
+}
+
+void ritz_beam_fit(int column, const double block[static 36], ritz_beam *beam)
+{
+    double axial = 0.0;
+    const double mu = fit_block(beam, 1 - column, column, block, &axial);
+
+    if (!(mu > 0.0))
         return;
     beam->mu = mu;
     beam->axial = axial;
     beam->known[column] = true;
 }
 
-/* ---- what the mean form lacks ------------------------------------------- */
-
 /* The term of s_i with s_j: half of the mass belongs to each s_j. */
 static double axial_term(const ritz_beam *beam, int i, int j)
 {
     return i == j ? beam->mu / 2.0 - beam->axial : beam->axial;
+}
+
+void ritz_beam_fit_held(const double block[static 36], ritz_beam *beam)
+{
+    double axial = 0.0;
+
+    beam->mu = fit_block(beam, 1, 1, block, &axial);
+    beam->axial = beam->mu / 2.0 - axial;
+    beam->known[1] = beam->mu > 0.0;
+}
+
+void ritz_beam_take_out(const ritz_beam *beam, int end, double block[36])
+{
+    double part[PARTS][36];
+
+    fill_parts(beam, end, end, part);
+    for (int k = 0; k < 36; k++)
+        block[k] -= (beam->mu * (part[COUPLING][k] + part[BENDING][k]) +
+                     axial_term(beam, end, end) * part[AXIS][k]) /
+                    scale_of(beam, k);
+}
+
+/* ---- what the mean form lacks ------------------------------------------- */
+
+/* Whether the block i, j of the beam is in M. */
+static bool has_block(const ritz_beam *beam, int i, int j)
+{
+    return beam->node[i] >= 0 && beam->known[j];
 }
 
 /* The m that the block i, j of the beam alone gives: a third of the trace of
@@ -350,9 +416,11 @@ static void fill_weights(const ritz_beam *beam, double C[6][6])
 {
     memset(C, 0, 36 * sizeof C[0][0]);
     for (int j = 0; j < 2; j++)
-        for (int i = 0; i < 2 && beam->known[j]; i++) {
+        for (int i = 0; i < 2; i++) {
             const double m = mean_term(beam, i, j);
 
+            if (!has_block(beam, i, j))
+                continue;
             C[i][j] = axial_term(beam, i, j) - m;
             C[i][2 + j] = term(beam, ALONG, i, ACROSS, j) - m;
             C[2 + i][j] = term(beam, ACROSS, i, ALONG, j) - m;
@@ -469,13 +537,14 @@ static void fill_places(const ritz_beam *beam, const ritz_nodes *nodes, int a,
     const double L = beam->L;
 
     for (int j = 0; j < 2; j++) {
-        const double *x =
-            nodes->grids->position + 3 * nodes->grid[beam->node[j]];
+        const double *x = nodes->grids->position + 3 * beam->grid[j];
         const double s = e * dot(beam->e, x);
 
         at[j] = s;
         at[2 + j] = x[a] - s;
-        for (int i = 0; i < 2 && beam->known[j]; i++) {
+        for (int i = 0; i < 2; i++) {
+            if (!has_block(beam, i, j))
+                continue;
             arm[j] -= e * L * term(beam, SLOPE, i, ACROSS, j);
             arm[4 + j] -= e * L * L * term(beam, SLOPE, i, SLOPE, j);
         }

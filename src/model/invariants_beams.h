@@ -23,7 +23,8 @@
 #include "model/equations.h"
 
 typedef struct ritz_beam {
-    int64_t node[2];       /* ascending */
+    int64_t node[2];       /* ascending; -1: a grid whose dofs are all held */
+    int64_t grid[2];       /* index in the grids */
     int64_t row[2][6];     /* of the dofs of both in M; -1: absent */
     const double *axes[2]; /* displacement axes, row by row; borrowed */
     bool known[2]; /* whether M has the columns of that node; one rank of
@@ -39,7 +40,8 @@ typedef struct ritz_beams {
 } ritz_beams;
 
 /**
- * Pairs of nodes that line cells join; which of them are beams is not known.
+ * Pairs of nodes that line cells join, and nodes that one such cell joins to a
+ * grid without dofs; which of them are beams is not known.
  *
  * @param[in] row  6 rows of each of the nodes, -1 where a dof is absent
  */
@@ -47,8 +49,8 @@ ritz_status ritz_beams_list(const ritz_elements *elements,
                             const ritz_nodes *nodes, const int64_t *row,
                             ritz_beams *out);
 
-/** The pair of nodes @p i and @p j; NULL if no line cell joins them.
- * @cost O(log count) */
+/** The pair of nodes @p i and @p j, one of which may be -1; NULL if no line cell
+ * joins them. @cost O(log count) */
 ritz_beam *ritz_beams_find(const ritz_beams *beams, int64_t i, int64_t j);
 
 /**
@@ -59,6 +61,15 @@ ritz_beam *ritz_beams_find(const ritz_beams *beams, int64_t i, int64_t j);
  * @param[in] block   6 x 6, row by row: rows of the other node
  */
 void ritz_beam_fit(int column, const double block[static 36], ritz_beam *beam);
+
+/**
+ * The same of a node that is joined to a held grid, from what is left of its
+ * own block without other beams.
+ */
+void ritz_beam_fit_held(const double block[static 36], ritz_beam *beam);
+
+/** Take what a beam puts into the block of node @p end alone out of it. */
+void ritz_beam_take_out(const ritz_beam *beam, int end, double block[36]);
 
 /** Leave out pairs that are no beams. */
 void ritz_beams_keep(ritz_beams *beams);

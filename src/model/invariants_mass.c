@@ -248,23 +248,42 @@ static ritz_status add_arm(const columns *c, int64_t i, int64_t j,
     return RITZ_OK;
 }
 
+/* Whether the pair of nodes i and j is a beam, whose end at j is then taken out
+   of `own`, the block of j alone. */
+static void fit_beam(const ritz_beams *beams, int64_t i, int64_t j,
+                     const double *block, double *own)
+{
+    ritz_beam *beam = i == j ? NULL : ritz_beams_find(beams, i, j);
+    const int column = beam && beam->node[1] == j;
+
+    if (!beam)
+        return;
+    ritz_beam_fit(column, block, beam);
+    if (beam->known[column])
+        ritz_beam_take_out(beam, column, own);
+}
+
 /* What column j of m, with its entries from `first` to `end`, holds. */
 static ritz_status read_column(const columns *c, int64_t j, int64_t first,
                                ritz_sparse *m, ritz_nodal_mass *mass)
 {
+    ritz_beam *held = ritz_beams_find(&mass->beams, -1, j);
+    double own[36] = {0};
+
     for (int64_t e = first; e < m->colptr[j + 1]; e++) {
         const int64_t i = m->rowind[e];
         const double *block = c->block + 36 * (e - first);
 
         m->val[e] = mean_of(c, i, j, block);
+        for (int k = 0; k < 36 && i == j; k++)
+            own[k] += block[k];
         if (has_rotations(block)) {
-            ritz_beam *beam = ritz_beams_find(&mass->beams, i, j);
-
             RITZ_CHECK(add_arm(c, i, j, block, mass));
-            if (beam && i != j)
-                ritz_beam_fit(beam->node[1] == j, block, beam);
+            fit_beam(&mass->beams, i, j, block, own);
         }
     }
+    if (held)
+        ritz_beam_fit_held(own, held);
     return RITZ_OK;
 }
 
