@@ -1,13 +1,26 @@
 """What scripts of this folder share: TAP lines, tools, a block of solid."""
+import os
 import pathlib
 import subprocess
 import sys
 
-import numpy
-import scipy.io
-import scipy.sparse
+
+def skip(reason):
+    """Ends the script as one that could not be run."""
+    print("skipped:", reason, flush=True)
+    sys.exit(77)
+
+
+try:
+    import numpy
+    import scipy.io
+    import scipy.sparse
+except ImportError as missing:
+    skip(missing)
 
 DATA = pathlib.Path(__file__).resolve().parents[2] / "data"
+EXTERNAL = pathlib.Path(os.environ.get(
+    "RITZ_EXTERNAL_DATA", DATA.parent / "../shared/data")).resolve()
 
 
 class Tap:

@@ -4,13 +4,16 @@ to six digits, and a superelement for OpenFAST by openfast-io to the bit."""
 import sys
 import tempfile
 
-import h5py
-import numpy
-import pyuff
-import scipy.linalg
-from openfast_io.FAST_reader import InputReader_OpenFAST
+from common import Block, Tap, Tools, skip
 
-from common import Block, Tap, Tools
+try:
+    import h5py
+    import numpy
+    import pyuff
+    import scipy.linalg
+    from openfast_io.FAST_reader import InputReader_OpenFAST
+except ImportError as missing:
+    skip(missing)
 
 
 def check_modes(tap, tools, block):
