@@ -10,7 +10,11 @@
  * A coordinate belongs to a grid if its column is that of a constraint, whose
  * row of T is a unit vector: then q_j is that displacement itself, along the
  * grid's own axes. Of a symmetric matrix the lower triangle is written, as
- * both would be fatal to NASTRAN [Nastran1986] [MSC2012].
+ * both would be fatal to NASTRAN [MSC2012].
+ *
+ * NASTRAN-95 wants each continuation marked, both triangles, and a D in each
+ * number of double precision [Nastran1986]: a number without is fatal there,
+ * and of one triangle the sum with its own matrices is unsymmetric.
  *
  * Forces of rigid motion are small differences of large entries, so
  * that rounding holds a free body, by springs of either sign. What rounding
@@ -54,7 +58,8 @@ static const dmig_kind kinds[] = {
 /* A matrix before and after rounding. */
 typedef struct dmig_matrix {
     const dmig_kind *kind;
-    bool symmetric;
+    bool symmetric, lower; /* one triangle of it is written */
+    bool lettered;         /* numbers have a D */
     double averaged; /* relative asymmetry of a symmetric one, by rounding */
     ritz_dense exact, rounded;
     int64_t stored, changed; /* numbers written; those that differ */
@@ -86,6 +91,13 @@ static void dmig_deck_free(dmig_deck *deck)
 
 /* ---- rounding ------------------------------------------------------------ */
 
+static void print_number(const dmig_matrix *m, double x,
+                         char text[static RITZ_LARGE_FIELD_SIZE])
+{
+    (m->lettered ? ritz_large_field_print_double
+                 : ritz_large_field_print)(x, text);
+}
+
 /* Round A(i,j) as its field does, and count. */
 static ritz_status round_entry(dmig_matrix *m, int64_t i, int64_t j)
 {
@@ -97,7 +109,7 @@ static ritz_status round_entry(dmig_matrix *m, int64_t i, int64_t j)
                    "row %" PRId64 " of column %" PRId64
                    " of '%s' is not finite",
                    i + 1, j + 1, m->kind->name);
-    ritz_large_field_print(x, text);
+    print_number(m, x, text);
     RITZ_REFUSE_IF(!ritz_card_number(text, y), RITZ_ERR_ARGUMENT,
                    "%g of '%s' is too large for a field", x, m->kind->name);
     m->stored += x != 0.0;
@@ -113,9 +125,9 @@ static ritz_status round_matrix(dmig_matrix *m)
 
     RITZ_CHECK(ritz_dense_new(n, n, &m->rounded));
     for (int64_t j = 0; j < n; j++)
-        for (int64_t i = m->symmetric ? j : 0; i < n; i++) {
+        for (int64_t i = m->lower ? j : 0; i < n; i++) {
             RITZ_CHECK(round_entry(m, i, j));
-            if (m->symmetric)
+            if (m->lower)
                 ritz_dense_col(&m->rounded, i)[j] =
                     ritz_dense_col(&m->rounded, j)[i];
         }
@@ -251,7 +263,8 @@ static bool in_interface(const dmig_deck *deck, int64_t grid)
 /* ---- matrices ------------------------------------------------------------ */
 
 /* Every entry of an exported matrix is stored, column after column. */
-static ritz_status take_matrix(const ritz_matrix *from, dmig_matrix *m)
+static ritz_status take_matrix(const ritz_matrix *from, bool numbered,
+                               dmig_matrix *m)
 {
     const ritz_dense all = {from->A.nrow, from->A.ncol, from->A.val};
 
@@ -263,8 +276,13 @@ static ritz_status take_matrix(const ritz_matrix *from, dmig_matrix *m)
     m->symmetric = m->averaged <= RITZ_SYMMETRIC;
     if (m->symmetric)
         ritz_dense_symmetrise(&m->exact);
+    m->lower = m->symmetric && !numbered;
+    m->lettered = numbered;
     RITZ_REFUSE_IF(!m->symmetric && !m->kind->square, RITZ_ERR_ARGUMENT,
                    "'%s' is not symmetric, and NASTRAN takes no such matrix",
+                   from->name);
+    RITZ_REFUSE_IF(!m->lower && !m->kind->square, RITZ_ERR_ARGUMENT,
+                   "NASTRAN-95, for which --numbered is, takes no '%s'",
                    from->name);
     return round_matrix(m);
 }
@@ -277,7 +295,8 @@ static ritz_status take_matrices(const ritz_export_object *object,
     RITZ_CHECK(
         ritz_export_damped(object, deck->request, "K,M,D,K4", report, &list));
     for (int64_t k = 0; k < list.count; k++)
-        RITZ_CHECK(take_matrix(&list.matrix[k], &deck->matrix[deck->count++]));
+        RITZ_CHECK(take_matrix(&list.matrix[k], deck->request->numbered,
+                               &deck->matrix[deck->count++]));
     return RITZ_OK;
 }
 
@@ -386,7 +405,9 @@ static ritz_status say_coordinates(const dmig_deck *deck,
 
 static ritz_status say_matrix(const dmig_matrix *m, ritz_export_report *report)
 {
-    const char *with = m->symmetric ? m->kind->symmetric : m->kind->square;
+    const char *with = m->lower ? m->kind->symmetric : m->kind->square;
+    const char *form =
+        m->symmetric ? " (both triangles, IFO 1)" : " (unsymmetric, IFO 1)";
 
     if (m->symmetric && m->averaged > 0.0)
         RITZ_CHECK(ritz_export_say(
@@ -397,9 +418,8 @@ static ritz_status say_matrix(const dmig_matrix *m, ritz_export_report *report)
         report,
         "%s is for %s = %s%s: %" PRId64 " of %" PRId64
         " numbers are rounded, by %.1e of themselves at most",
-        m->kind->name, with, m->kind->card,
-        m->symmetric ? "" : " (unsymmetric, IFO 1)", m->changed, m->stored,
-        m->change);
+        m->kind->name, with, m->kind->card, m->lower ? "" : form, m->changed,
+        m->stored, m->change);
 }
 
 static ritz_status say_free(const dmig_audit *audit, ritz_export_report *report)
@@ -541,7 +561,7 @@ static void put_column(FILE *file, const dmig_deck *deck, const dmig_matrix *m,
 {
     const int64_t j = deck->at[col];
     const ritz_dof of = deck->dof[j];
-    int64_t k = next_term(deck, m, j, m->symmetric ? col : 0);
+    int64_t k = next_term(deck, m, j, m->lower ? col : 0);
     char fields[4 * RITZ_LARGE_FIELD_SIZE], number[RITZ_LARGE_FIELD_SIZE];
 
     snprintf(fields, sizeof fields, "%-16s%16" PRId64 "%16" PRId64,
@@ -551,7 +571,7 @@ static void put_column(FILE *file, const dmig_deck *deck, const dmig_matrix *m,
         const int64_t i = deck->at[k];
 
         k = next_term(deck, m, j, k + 1);
-        ritz_large_field_print(ritz_dense_col(&m->exact, j)[i], number);
+        print_number(m, ritz_dense_col(&m->exact, j)[i], number);
         snprintf(fields, sizeof fields, "%16" PRId64 "%16" PRId64 "%16s",
                  deck->dof[i].grid, deck->dof[i].component, number);
         put_line(file, marks, NULL, fields, k < deck->order);
@@ -567,7 +587,7 @@ static void put_commands(FILE *file, const dmig_deck *deck)
         const dmig_matrix *m = &deck->matrix[k];
 
         snprintf(text, sizeof text, "  %s = %s",
-                 m->symmetric ? m->kind->symmetric : m->kind->square,
+                 m->lower ? m->kind->symmetric : m->kind->square,
                  m->kind->card);
         put_comment(file, text);
     }
@@ -593,7 +613,7 @@ static ritz_status put_deck(FILE *file, const void *what)
         const dmig_matrix *m = &deck->matrix[k];
 
         fprintf(file, "DMIG    %-8s%8d%8d%8d%8d\n", m->kind->card, 0,
-                m->symmetric ? SYMMETRIC : SQUARE, 2, 0);
+                m->lower ? SYMMETRIC : SQUARE, 2, 0);
         for (int64_t col = 0; col < deck->order; col++)
             put_column(file, deck, m, col, &marks);
     }

@@ -3,9 +3,10 @@
  * sign, digits, point and exponent. The exponent has no letter, and the point
  * stands where most digits fit:
  *
- *     .123456789012345   123.456789012345   1234567890123.+8   .123456789-123
+ *     .123456789012345   123.456789012345   1234567890123.+8   1.2345678901-123
  *
- * [Nastran1986], bulk data.
+ * [Nastran1986], bulk data, where a number of double precision must have a
+ * letter, 1.234567890123D5.
  */
 #include "formats/large_field.h"
 
@@ -48,6 +49,7 @@ static large_figures round_to(double x, int n)
 typedef struct large_field {
     int length;
     char *text;
+    bool lettered; /* always an exponent, with a D */
 } large_field;
 
 /* Count characters of `text`, or zeros if it is NULL. */
@@ -81,10 +83,10 @@ static bool print_fixed(const large_figures *f, int width, large_field *field)
     return true;
 }
 
-/* Columns of the exponent, "+5" or "-12". */
-static int print_exponent(int e, char text[static 16])
+/* Columns of the exponent, "+5" or "-12", with a letter "D5" or "D-12". */
+static int print_exponent(const large_field *field, int e, char text[static 16])
 {
-    return snprintf(text, 16, "%+d", e);
+    return snprintf(text, 16, field->lettered ? "D%d" : "%+d", e);
 }
 
 /* With exponent, and the point where that is shortest, behind the first digit
@@ -93,11 +95,11 @@ static bool print_scaled(const large_figures *f, int width, large_field *field)
 {
     int whole = f->E > 0 ? f->n : 0;
     char exponent[16];
-    int columns = print_exponent(f->E - whole, exponent);
+    int columns = print_exponent(field, f->E - whole, exponent);
 
-    if (print_exponent(f->E - 1, exponent) <= columns)
+    if (print_exponent(field, f->E - 1, exponent) <= columns)
         whole = 1;
-    columns = print_exponent(f->E - whole, exponent);
+    columns = print_exponent(field, f->E - whole, exponent);
     if (f->n + 1 + columns > width)
         return false;
     append(field, f->negative, "-");
@@ -108,16 +110,32 @@ static bool print_scaled(const large_figures *f, int width, large_field *field)
     return true;
 }
 
-void ritz_large_field_print(double x, char out[static RITZ_LARGE_FIELD_SIZE])
+static void print_number(double x, large_field *field)
 {
     const int width = x < 0.0 ? FIELD - 1 : FIELD;
-    large_field field = {.text = out};
 
-    snprintf(out, RITZ_LARGE_FIELD_SIZE, "0.");
+    snprintf(field->text, RITZ_LARGE_FIELD_SIZE,
+             field->lettered ? "0.D0" : "0.");
     for (int n = MOST_FIGURES; x != 0.0 && n > 0; n--) {
         const large_figures f = round_to(x, n);
 
-        if (print_fixed(&f, width, &field) || print_scaled(&f, width, &field))
+        if ((!field->lettered && print_fixed(&f, width, field)) ||
+            print_scaled(&f, width, field))
             return;
     }
+}
+
+void ritz_large_field_print(double x, char out[static RITZ_LARGE_FIELD_SIZE])
+{
+    large_field field = {.text = out};
+
+    print_number(x, &field);
+}
+
+void ritz_large_field_print_double(double x,
+                                   char out[static RITZ_LARGE_FIELD_SIZE])
+{
+    large_field field = {.text = out, .lettered = true};
+
+    print_number(x, &field);
 }

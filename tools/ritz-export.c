@@ -52,7 +52,8 @@ int main(int argc, char **argv)
         CLI_INT("digits", &request->digits, "N", 1, 17,
                 "significant digits of text [17]"),
         CLI_FLAG("numbered", &request->numbered,
-                 "number continuations, as NASTRAN-95 wants them (dmig)"),
+                 "as NASTRAN-95 wants it: marked continuations, both "
+                 "triangles, exponents with a D (dmig)"),
         CLI_TEXT("port", &request->ports, "NAME[,NAME]",
                  "ports whose grids are the interface (basilisk, openfast, "
                  "openfast-4, simscape) [those attached]"),

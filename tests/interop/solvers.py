@@ -51,8 +51,10 @@ def run_nastran95(deck, folder):
         here[f"SOF{k}"] = "none"
     for k in range(11, 24):
         here[f"FTN{k}"] = str(scratch / f"unit{k}")
-    here["FTN14"] = str(folder / (stem + ".op4"))
-    here["FTN15"] = str(folder / (stem + ".op4b"))
+    for unit, ending in ("14", ".op4"), ("15", ".op4b"):
+        path = folder / (stem + ending)
+        path.unlink(missing_ok=True)  # it opens no file that is there already
+        here["FTN" + unit] = str(path)
     with open(folder / deck) as text:
         return run([NASTRAN95], folder, stem + ".out", stdin=text, env=here)
 
@@ -72,12 +74,28 @@ def run_calculix(deck, folder):
     return run(["ccx", stem], folder, stem + ".out", env=one)
 
 
-# a mode, its extraction order, eigenvalue, radians, cycles, and two more
-ROW = re.compile(r"^\s*(\d+)\s+(\d+)" + r"\s+([-+.\dE]+)" * 5 + r"\s*$")
+NUMBER = r"\s+([-+]?\d[-+.\dE]*)"
+# a mode, its extraction order, eigenvalue, which may have a star, radians,
+# cycles, and two more
+REAL = re.compile(rf"^\s*\d+\s+\d+{NUMBER}\*?" + NUMBER * 4 + r"\s*$")
+# a root, its extraction order, real and imaginary part, cycles, damping
+COMPLEX = re.compile(r"^\s*\d+\s+\d+" + NUMBER * 4 + r"\s*$")
+
+
+def rows_below(title, row, text, at):
+    """Fields `at` of the rows below a title that is printed with spaces."""
+    found = text.find(title)
+    lines = text[found:].splitlines() if found >= 0 else []
+    rows = [row.match(line) for line in lines]
+    return [r.group(at) for r in rows if r]
 
 
 def printed_hertz(text):
     """Frequencies of the table of real eigenvalues that NASTRAN-95 and MYSTRAN
-    print, as text, in their order."""
-    rows = [ROW.match(line) for line in text.splitlines()]
-    return [row.group(5) for row in rows if row]
+    print, as text, in their order, which is ascending."""
+    return rows_below("R E A L   E I G E N V A L U E S", REAL, text, 3)
+
+
+def printed_complex_hertz(text):
+    """Those of NASTRAN-95's summary of complex eigenvalues."""
+    return rows_below("E I G E N V A L U E   S U M M A R Y", COMPLEX, text, 3)

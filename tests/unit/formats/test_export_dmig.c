@@ -12,6 +12,7 @@
 #include "scenes.h"
 
 #include "base/alloc.h"
+#include "formats/large_field.h"
 
 #include <ritz/basis.h>
 #include <ritz/export.h>
@@ -190,6 +191,34 @@ static void a_field_keeps_as_many_digits_as_fit(void **state)
     check_damping(far, "B2PP = BAAX");
 }
 
+static void exponents_take_the_room_of_digits(void **state)
+{
+    static const double third = 1.0 / 3.0;
+    static const struct {
+        double x;
+        const char *plain, *lettered;
+    } field[] = {
+        {third, ".333333333333333", ".3333333333333D0"},
+        {-third * 1e6, "-333333.33333333", "-3.33333333333D5"},
+        {third * 1e6, "333333.333333333", "3.333333333333D5"},
+        {third * 1e-4, "3.333333333333-5", "3.33333333333D-5"},
+        {third * 1e-19, "3.33333333333-20", "3.3333333333D-20"},
+        {third * 1e31, "3.33333333333+30", "3.33333333333D30"},
+        {-third * 1e-119, "-3.333333333-120", "-3.33333333D-120"},
+        {0.0, "0.", "0.D0"},
+        {-2.5, "-2.5", "-2.5D0"},
+    };
+    char text[RITZ_LARGE_FIELD_SIZE];
+
+    (void)state;
+    for (size_t k = 0; k < sizeof field / sizeof *field; k++) {
+        ritz_large_field_print(field[k].x, text);
+        assert_string_equal(text, field[k].plain);
+        ritz_large_field_print_double(field[k].x, text);
+        assert_string_equal(text, field[k].lettered);
+    }
+}
+
 static void numbers_with_few_digits_come_back_in_every_bit(void **state)
 {
     const double D[] = {1e22,   0.1,   -0.125,           0.1, 1e-9, 2.5e9,
@@ -277,25 +306,40 @@ static void a_reduced_bar_keeps_its_frequencies(void **state)
         assert_near(after.lambda[k], before.lambda[k], 1e-9 * before.lambda[k]);
 }
 
-static void continuations_are_numbered_on_request(void **state)
+/* Marks, both triangles, and a D in each number [Nastran1986]. */
+static void nastran_95_gets_what_it_wants(void **state)
 {
+    static const char *const column =
+        "DMIG*   MAAX                          12               3"
+        "                *R000007\n"
+        "*R000007              12               3            2.D0\n";
+    static const char *const last =
+        "DMIG*   MAAX                        1001               0"
+        "                *R000008\n"
+        "*R000008              11               1           .25D0"
+        "                *R000009\n";
     const char *path = folder_path("numbered.dmig");
     RITZ_OWN(ritz_reduced) small = {0};
     RITZ_OWN(ritz_export_report) report = {0};
     RITZ_OWN(ritz_matrix) M = {0};
     RITZ_OWN_ARRAY char *text = NULL;
-    const char *line = NULL;
 
     (void)state;
     assert_ok(make_small(stiffness, mass, &small));
     assert_ok(write_to(&small, path, true, &report));
+    assert_true(says(&report, "M is for M2PP = MAAX (both triangles, IFO 1): "
+                              "0 of 5 numbers are rounded"));
     assert_ok(ritz_text_read(path, &text));
-    line = strstr(text, "DMIG*   MAAX");
-    assert_non_null(line);
-    assert_memory_equal(line + 72, "*R000004\n*R000004", 17);
-    assert_memory_equal(line + 81 + 72, "*R000005\n*R000005", 17);
+    assert_non_null(strstr(text, "\n$   K2PP = KAAX\n"));
+    assert_non_null(strstr(text, column));
+    assert_non_null(strstr(text, last));
     read_card(path, "MAAX", &M);
+    assert_string_equal(M.spelling, "DMIG, form 1");
     assert_true(matrix_entry(&M.A, M.A.val, 0, 2) == 0.25);
+    assert_true(matrix_entry(&M.A, M.A.val, 2, 0) == 0.25);
+    assert_ok(put_values(stiffness, &small.K4));
+    assert_fails(write_to(&small, path, true, &report), RITZ_ERR_ARGUMENT,
+                 "NASTRAN-95, for which --numbered is, takes no 'K4'");
 }
 
 static void what_dmig_cannot_carry_is_refused(void **state)
@@ -361,10 +405,11 @@ static void survives_failing_allocations(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(small_component_has_these_cards),
     cmocka_unit_test(a_field_keeps_as_many_digits_as_fit),
+    cmocka_unit_test(exponents_take_the_room_of_digits),
     cmocka_unit_test(numbers_with_few_digits_come_back_in_every_bit),
     cmocka_unit_test(a_body_that_rounding_holds_is_reported),
     cmocka_unit_test(a_reduced_bar_keeps_its_frequencies),
-    cmocka_unit_test(continuations_are_numbered_on_request),
+    cmocka_unit_test(nastran_95_gets_what_it_wants),
     cmocka_unit_test(what_dmig_cannot_carry_is_refused),
     cmocka_unit_test(other_formats_number_nothing),
     cmocka_unit_test(survives_failing_allocations),
