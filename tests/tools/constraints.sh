@@ -104,6 +104,16 @@ expect 1 'RSPLINE 77 is not understood: MPC, RBAR, RBE1, RBE2, RBE3 and RTRPLT a
     ritz-import --stiffness "$data/tied/kgg.mtx" --mass "$data/tied/mgg.mtx" \
     --bulk spline.bdf -o x.h5
 
+# --- supports of the deck ---------------------------------------------------------
+
+{ cat brick.bdf; printf 'SPC1,4,123,%d\n' 1 2 3; } >held.bdf
+held=$(echo "$solid" | sed 's/brick/held/')
+expect 0 '9 rows that the deck fixes removed: grid 1 T1, grid 1 T2, grid 1 T3, grid 2 T1, grid 2 T2, grid 2 T3, grid 3 T1, grid 3 T2, ...' \
+    ritz-import $held -o held.h5
+json 0 ritz-import $held -o held.h5
+holds '  all of them in JSON' 'len(j["fixed"]) == 9 and
+    j["fixed"][8] == "grid 3 T3" and j["removed"] == []'
+
 # --- ports of a solid ------------------------------------------------------------
 
 expect 0 "port 'foot' is the new grid 64, tied to 27 dofs" \

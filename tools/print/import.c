@@ -60,17 +60,17 @@ static void take_sums(cli_run *run, const ritz_file_sums *sums)
 }
 
 /* Rows that are gone: the first few by name, all of them in JSON. */
-static void say_removed(cli_run *run, const ritz_import_report *report)
+static void say_rows(cli_run *run, const char *key, const char *what,
+                     int64_t count, const ritz_dof *dof)
 {
     enum { SHOWN = 8 };
-    int64_t count = report->num_removed;
 
     if (count > 0)
-        sink_part(run, "%ld rows empty in stiffness and mass removed: ", count);
-    SINK_EACH(run, "removed", k, count) {
+        sink_part(run, "%ld rows %s removed: ", count, what);
+    SINK_EACH(run, key, k, count) {
         char name[RITZ_DOF_NAME_SIZE];
 
-        ritz_dof_name(report->removed[k], name);
+        ritz_dof_name(dof[k], name);
         sink_add(run, "%s", name);
         if (k < SHOWN)
             sink_part(run, "%s%s", k > 0 ? ", " : "", name);
@@ -126,7 +126,9 @@ static void say_import(cli_run *run, const ritz_component *component,
                        const ritz_import_report *done)
 {
     sink_say(run, "map", "  rows named by  %s", done->map);
-    say_removed(run, done);
+    say_rows(run, "removed", "empty in stiffness and mass", done->num_removed,
+             done->removed);
+    say_rows(run, "fixed", "that the deck fixes", done->num_fixed, done->fixed);
     say_constraints(run, done);
     sink_set(run, "massless,floating,elements,elements_left_out",
              "%ld %ld %ld %ld", done->num_massless, done->num_floating,
