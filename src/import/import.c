@@ -193,15 +193,29 @@ static ritz_status sort_rows(const unsigned char *mark, const ritz_deck *deck,
     return RITZ_OK;
 }
 
-/* Of grids keep those that have rows in the matrices. */
-static void keep_grids(const ritz_roster *roster, ritz_grids *grids)
+/* Whether the deck fixes the place of a grid. */
+static bool is_held(const ritz_deck *deck, int64_t id)
+{
+    for (int component = 1; component <= 3; component++)
+        if (!ritz_dof_among((ritz_dof){id, component}, deck->num_fixed,
+                            deck->fixed))
+            return false;
+    return true;
+}
+
+/* Keep grids that have rows in the matrices, and those that do not move: some
+   solvers leave out their rows. The motion of others is not known. */
+static void keep_grids(const ritz_roster *roster, const ritz_deck *deck,
+                       ritz_grids *grids)
 {
     int64_t kept = 0;
 
     for (int64_t k = 0; k < grids->count; k++) {
-        int64_t at = ritz_roster_from(roster, grids->id[k]);
+        const int64_t at = ritz_roster_from(roster, grids->id[k]);
 
-        if (at == roster->count || roster->place[at].dof.grid != grids->id[k])
+        if ((at == roster->count ||
+             roster->place[at].dof.grid != grids->id[k]) &&
+            !is_held(deck, grids->id[k]))
             continue;
         grids->id[kept] = grids->id[k];
         grids->frame[kept] = grids->frame[k];
@@ -385,7 +399,7 @@ ritz_status ritz_import_units(const char *text, char out[RITZ_NAME_SIZE])
     return RITZ_OK;
 }
 
-/* Grids of rows and of recovered dofs; the origin for a single grid without a
+/* Grids of rows and of recovered dofs, and held ones; the origin for a single grid without a
  * deck. */
 static ritz_status place_grids(ritz_deck *deck, const ritz_row_names *kept,
                                ritz_component *component)
@@ -400,7 +414,7 @@ static ritz_status place_grids(ritz_deck *deck, const ritz_row_names *kept,
         return place_alone(&all, &component->grids);
     RITZ_CHECK(ritz_roster_new(all.count, all.dof, &roster));
     RITZ_MOVE(component->grids, deck->grids);
-    keep_grids(&roster, &component->grids);
+    keep_grids(&roster, deck, &component->grids);
     return RITZ_OK;
 }
 

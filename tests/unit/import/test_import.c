@@ -122,6 +122,31 @@ static void rows_that_the_deck_fixes_are_taken_out(void **)
     assert_near(c.K.val[0], 2.0, 0.0);
 }
 
+/* Their rows may be missing: they do not move. */
+static void grids_that_the_deck_holds_have_places(void **state)
+{
+    const ritz_import_request request = {
+        .mass = put_diagonal("m.mtx", 3, full),
+        .dofs = folder_write("m.dofs", "5 1\n5 2\n5 3\n"),
+        .bulk = folder_write("deck.bdf",
+                             "GRID,3,,1.,0.,0.,,123\nGRID,4,,2.,0.,0.,,12\n"
+                             "GRID,5,,3.,0.,0.\nGRID,6,,4.,0.,0.\n"
+                             "CBAR,1,1,3,5,4\nCBAR,2,1,4,5,3\n")};
+    RITZ_OWN(ritz_import_report) report = {0};
+    RITZ_OWN(ritz_component) c = {0};
+
+    (void)state;
+    assert_ok(ritz_import(&request, &c, &report));
+    assert_int_equal(c.num_dofs, 3);
+    assert_int_equal(report.num_fixed, 0);
+    assert_int_equal(c.grids.count, 2); /* of 4 and 6 it is not known */
+    assert_int_equal(c.grids.id[0], 3);
+    assert_int_equal(c.grids.id[1], 5);
+    assert_near(c.grids.position[0], 1.0, 0.0);
+    assert_int_equal(c.elements.count, 1);
+    assert_int_equal(report.num_hidden, 1);
+}
+
 static void other_sizes_are_the_a_set_or_grids_less_spcs(void **)
 {
     ritz_import_request request = {
@@ -672,6 +697,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(rows_empty_in_both_are_removed_and_others_stay),
     cmocka_unit_test(mass_alone_is_a_rigid_component),
     cmocka_unit_test(rows_that_the_deck_fixes_are_taken_out),
+    cmocka_unit_test(grids_that_the_deck_holds_have_places),
     cmocka_unit_test(other_sizes_are_the_a_set_or_grids_less_spcs),
     cmocka_unit_test(constraints_act_on_matrices_that_have_their_dofs),
     cmocka_unit_test(a_file_of_names_rules),
