@@ -1,6 +1,6 @@
 #!/usr/bin/python3 -s
 """with_nastran_readers.py PROGRAMS - OUTPUT4 files that ritz-export writes are
-read by pyNastran and pyYeti, to the same bits."""
+read by pyNastran and pyYeti to the same bits, DMIG cards to their digits."""
 import itertools
 import sys
 import tempfile
@@ -12,6 +12,8 @@ try:
     import numpy
     import pyNastran.op4.op4
     import pyyeti.nastran.op4
+    from pyNastran.bdf.bdf import BDF
+    from pyyeti.nastran import bulk
 except ImportError as missing:
     skip(missing)
 
@@ -73,6 +75,48 @@ def check_digits(tap, tools, expected):
                   f"nine digits: {reader} reads K rounded to nine digits")
 
 
+def cards_by_pynastran(path, name):
+    """Values and names of rows."""
+    model = BDF(debug=None)
+    model.read_bdf(path, punch=True, xref=False)
+    A, rows, _ = model.dmig[name].get_matrix(is_sparse=False)
+    return dense(A), [rows[k] for k in range(len(rows))]
+
+
+def cards_by_pyyeti(path, name):
+    frame = bulk.rddmig(path)[name.lower()]
+    return frame.to_numpy(), [tuple(at) for at in frame.index]
+
+
+def check_cards(tap, tools, expected, options):
+    """Coordinates are 27 dofs of nine grids, which come first, and six scalar
+    points. pyNastran sorts names as it likes."""
+    # eleven digits of -1.2345678901-12, ten of -1.234567890D-12
+    worst = 5e-10 if "--numbered" in options else 5e-11
+    title = " ".join(["dmig"] + [option.strip("-") for option in options])
+    tools("ritz-export", "--to", "dmig", "--force", *options, "reduced.h5",
+          "-o", "reduced.dmig")
+    with h5py.File(tools.path("reduced.h5")) as f:
+        column = f["columns/dof"][:]
+        place = [(int(f["dofs/grid"][k]), int(f["dofs/component"][k]))
+                 for k in column[column >= 0]]
+    place += [(1001 + k, 0) for k in range((column < 0).sum())]
+    for reader, read in (("pyNastran", cards_by_pynastran),
+                         ("pyYeti", cards_by_pyyeti)):
+        for name in "KM":
+            values, rows = read(tools.path("reduced.dmig"), name + "AAX")
+            tap.check(sorted(rows) == sorted(place),
+                      f"{title}: {reader} reads the names of rows")
+            at = [place.index(row) for row in rows]
+            matrix = expected[name][numpy.ix_(at, at)]
+            # an asymmetry of rounding is averaged away
+            matrix = (matrix + matrix.T) / 2.0
+            error = numpy.abs(values - matrix)
+            tap.check(values.shape == matrix.shape
+                      and (error <= worst * numpy.abs(matrix)).all(),
+                      f"{title}: {reader} reads {name} to its digits")
+
+
 def main():
     tap = Tap()
     with tempfile.TemporaryDirectory() as folder:
@@ -88,6 +132,8 @@ def main():
                                             [[], ["--dense"]]):
             check(tap, tools, expected, text + full)
         check_digits(tap, tools, expected)
+        for options in [], ["--numbered"]:
+            check_cards(tap, tools, expected, options)
     tap.finish()
 
 
