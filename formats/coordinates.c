@@ -8,13 +8,15 @@
  * OUTPUT, FORMAT=COORDINATE) [Abaqus2016]. Such a file states neither its order
  * nor its symmetry. The order is the largest row or column, of entries that are
  * zero too. A matrix none of whose entries has a counterpart across the diagonal
- * is symmetric, as one with entries in one triangle only; another is taken as it
- * stands.
+ * is symmetric, as one with entries in one triangle only; one all of whose
+ * entries have counterparts is taken as it stands. Of a mixture it is not known
+ * whether what is missing is zero or equal.
  */
 #include "base/alloc.h"
 #include "formats/market.h"
 #include "formats/matrix.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -59,6 +61,7 @@ static int64_t count_lines(const char *bytes, int64_t size)
 
 typedef struct pair_place {
     int64_t low, high; /* of row and column */
+    int64_t k;         /* its entry */
 } pair_place;
 
 static int compare_places(const void *left, const void *right)
@@ -69,45 +72,78 @@ static int compare_places(const void *left, const void *right)
     return order ? order : (a->high > b->high) - (a->high < b->high);
 }
 
-static bool is_counterpart(const ritz_market_entry *a,
-                           const ritz_market_entry *b)
+/* A number of 64 bits that is as good as random [Steele2014]. */
+static uint64_t mix(uint64_t z)
 {
-    return a->row == b->col && a->col == b->row;
+    z += UINT64_C(0x9e3779b97f4a7c15);
+    z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
+    z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
+    return z ^ (z >> 31);
 }
 
-/* Whether the first entry off the diagonal has a counterpart, as it has where
-   both triangles are written. */
-static bool begins_paired(const ritz_market *m)
+/* Whether each entry off the diagonal has a counterpart: if so, sums of random
+   numbers over the places of both triangles are equal, and otherwise almost
+   never. Large files have all of them, and are not sorted for this. */
+static bool all_paired(const ritz_market *m)
 {
-    int64_t first = 0;
+    uint64_t difference = 0;
 
-    while (first < m->count && m->entry[first].row == m->entry[first].col)
-        first++;
-    for (int64_t k = first + 1; k < m->count; k++)
-        if (is_counterpart(&m->entry[first], &m->entry[k]))
-            return true;
-    return false;
+    for (int64_t k = 0; k < m->count; k++) {
+        const uint64_t i = (uint64_t)m->entry[k].row;
+        const uint64_t j = (uint64_t)m->entry[k].col;
+
+        if (i > j)
+            difference += mix(mix(i) ^ j);
+        else if (i < j)
+            difference -= mix(mix(j) ^ i);
+    }
+    return difference == 0;
 }
 
-/* Whether any entry off the diagonal has a counterpart. */
-static ritz_status find_pair(const ritz_market *m, bool *out)
+/* Entries off the diagonal, those that are counterparts side by side. */
+static ritz_status list_places(const ritz_market *m, int64_t *count,
+                               pair_place **out)
 {
-    RITZ_OWN_ARRAY pair_place *place = NULL;
-    int64_t count = 0;
-
-    *out = begins_paired(m);
-    if (*out)
-        return RITZ_OK;
-    RITZ_CHECK_NEW(place, m->count);
+    RITZ_CHECK_NEW(*out, m->count);
     for (int64_t k = 0; k < m->count; k++) {
         const int64_t i = m->entry[k].row, j = m->entry[k].col;
 
         if (i != j)
-            place[count++] = (pair_place){i < j ? i : j, i < j ? j : i};
+            (*out)[(*count)++] = (pair_place){i < j ? i : j, i < j ? j : i, k};
     }
-    qsort(place, (size_t)count, sizeof *place, compare_places);
-    for (int64_t k = 1; k < count && !*out; k++)
-        *out = compare_places(&place[k - 1], &place[k]) == 0;
+    qsort(*out, (size_t)*count, sizeof **out, compare_places);
+    return RITZ_OK;
+}
+
+/* Whether entries have counterparts; not some of them, unless the others are
+   zero. */
+static ritz_status find_pairs(const ritz_market *m, bool *out)
+{
+    RITZ_OWN_ARRAY pair_place *place = NULL;
+    const ritz_market_entry *alone = NULL;
+    int64_t count = 0;
+
+    *out = all_paired(m);
+    if (*out)
+        return RITZ_OK;
+    RITZ_CHECK(list_places(m, &count, &place));
+    for (int64_t k = 0; k < count; k++) {
+        const ritz_market_entry *e = &m->entry[place[k].k];
+
+        if (k + 1 < count && compare_places(&place[k], &place[k + 1]) == 0) {
+            *out = true;
+            while (k + 1 < count &&
+                   compare_places(&place[k], &place[k + 1]) == 0)
+                k++; /* an entry that is given twice is refused later */
+        } else if (!alone && e->re != 0.0) {
+            alone = e;
+        }
+    }
+    RITZ_REFUSE_IF(*out && alone, RITZ_ERR_FORMAT,
+                   "entry (%" PRId64 ", %" PRId64 ") has no counterpart across "
+                   "the diagonal, and others have: whether that is zero or "
+                   "equal is not known",
+                   alone->row + 1, alone->col + 1);
     return RITZ_OK;
 }
 
@@ -142,7 +178,7 @@ static ritz_status settle_shape(ritz_market *m)
     }
     m->nrow = m->ncol = n;
     if (above && below)
-        RITZ_CHECK(find_pair(m, &paired));
+        RITZ_CHECK(find_pairs(m, &paired));
     if (above && below && !paired)
         turn_to_lower(m);
     m->symmetry = paired ? RITZ_MARKET_GENERAL : RITZ_MARKET_SYMMETRIC;

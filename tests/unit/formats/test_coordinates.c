@@ -75,6 +75,9 @@ static void both_triangles_are_taken_as_they_stand(void **)
     assert_holds("1 1 1.\n2 1 2.\n1 2 -2.\n2 2 3.\n3 3 5.\n", other, false);
     /* a zero shows that the file has entries on both sides */
     assert_holds("1 1 1.\n2 1 0.\n1 2 7.\n2 2 1.\n3 3 1.\n", half, false);
+    /* the counterpart of a zero may be missing */
+    assert_holds("1 1 1.\n2 1 0.\n1 2 7.\n1 3 0.\n2 2 1.\n3 3 1.\n", half,
+                 false);
 }
 
 static void the_order_is_the_largest_row_or_column(void **)
@@ -133,6 +136,10 @@ static void what_is_wrong_is_said_with_its_line(void **)
         {"1 1 2.5\n1 2 1.\n1 2 1.\n", "entry (1, 2) is given twice"},
         {"1 1 2.5\n1 1 2.5\n", "entry (1, 1) is given twice"},
         {"1 1 2.5\n1 2 1.\n2 1 1.\n1 2 1.\n", "entry (1, 2) is given twice"},
+        {"1 1 1.\n1 2 1.\n2 1 1.\n1 3 1e-9\n3 3 1.\n",
+         "entry (1, 3) has no counterpart across the diagonal, and others "
+         "have: whether that is zero or equal is not known"},
+        {"1 1 1.\n1 2 1.\n3 1 1.\n1 3 1.\n", "entry (1, 2) has no counter"},
         {"1 1 2.5\n1 99999999 1.\n",
          "99999999 x 99999999 is far more than the file can fill"},
         {"2000000 1 2.5\n", "2000000 x 2000000 is far more than the file"},
