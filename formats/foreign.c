@@ -72,7 +72,7 @@ static ritz_status check_change(const ritz_foreign *file, ritz_status status)
 
 ritz_status ritz_foreign_list(ritz_foreign *file)
 {
-    char known[128] = "";
+    char known[RITZ_MESSAGE_SIZE] = "";
     size_t used = 0;
 
     RITZ_REFUSE_IF(file->size == 0, RITZ_ERR_FORMAT, "is empty");
