@@ -15,6 +15,15 @@
 
 enum { MOST_FILES = 10000 };
 
+ritz_lines ritz_deck_lines(const char *text, int64_t size)
+{
+    static const char mark[] = "\xef\xbb\xbf";
+    const int64_t skipped =
+        size >= 3 && memcmp(text, mark, sizeof mark - 1) == 0 ? 3 : 0;
+
+    return (ritz_lines){.at = text + skipped, .end = text + size};
+}
+
 /* Append a file; its text belongs to the deck then, unless the call fails. */
 static ritz_status add_file(ritz_deck_files *files, const char *path,
                             ritz_deck_file file)
@@ -54,7 +63,7 @@ ritz_status ritz_deck_begin(ritz_deck_reading *reading, const char *path,
         RITZ_CHECK_COPY(copy, folder, (int64_t)strlen(folder) + 1);
     reading->home = folder;
     reading->open[reading->depth++] =
-        (ritz_deck_text){.text = {.at = text, .end = text + size},
+        (ritz_deck_text){.text = ritz_deck_lines(text, size),
                          .file = reading->files->count - 1,
                          .folder = copy};
     return RITZ_OK;
@@ -144,7 +153,7 @@ static ritz_status include_path(ritz_deck_reading *reading, const char *path)
     if (!earlier)
         RITZ_CHECK(ritz_text_read(path, &bytes));
     text = earlier ? earlier->text : bytes;
-    new.text = (ritz_lines){.at = text, .end = text + strlen(text)};
+    new.text = ritz_deck_lines(text, (int64_t)strlen(text));
     file.text = bytes;
     RITZ_CHECK(add_file(reading->files, path, file));
     bytes = NULL;

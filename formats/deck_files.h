@@ -51,6 +51,10 @@ typedef struct ritz_deck_reading {
     ritz_deck_text open[RITZ_DECK_DEEPEST + 1];
 } ritz_deck_reading;
 
+/** The lines of a text, without the byte order mark that editors put before
+ * UTF-8. */
+ritz_lines ritz_deck_lines(const char *text, int64_t size);
+
 /**
  * Begin with the deck itself.
  *

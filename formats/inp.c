@@ -15,6 +15,7 @@
 #include "formats/inp.h"
 #include "base/alloc.h"
 
+#include <ctype.h>
 #include <inttypes.h>
 #include <string.h>
 
@@ -93,8 +94,8 @@ static ritz_status take_element(ritz_inp *all)
         if (all->begun == 0) {
             RITZ_CHECK_ROOM(all->element, all->num_elements,
                             all->elements_room);
-            all->element[all->num_elements++] =
-                (ritz_inp_element){all->type, all->num_joined};
+            all->element[all->num_elements++] = (ritz_inp_element){
+                all->type, id, all->num_joined, all->fields.place};
             all->begun = id;
         } else if (count_joined(all) < all->type->size) {
             RITZ_CHECK_ROOM(all->joined, all->num_joined, all->joined_room);
@@ -171,6 +172,18 @@ static const struct fixing {
     {"ZSYMM", 0x38},    {"XASYMM", 0x1c}, {"YASYMM", 0x2a}, {"ZASYMM", 0x46},
 };
 
+/* Nothing may follow the first fields. */
+static ritz_status check_end(const ritz_inp *all, int64_t first)
+{
+    for (int64_t k = first; k < all->fields.count; k++)
+        if (ritz_inp_field(all, k).length > 0)
+            return ritz_inp_refuse(all, all->fields.place,
+                                   "'%.*s' in '*%.*s' is one field too many",
+                                   RITZ_INP_QUOTED(ritz_inp_field(all, k)),
+                                   RITZ_INP_QUOTED(all->keyword.name));
+    return RITZ_OK;
+}
+
 /* A word; or first direction, last direction, motion. */
 static ritz_status take_directions(const ritz_inp *all,
                                    ritz_inp_support *support)
@@ -181,7 +194,7 @@ static ritz_status take_directions(const ritz_inp *all,
     for (size_t k = 0; k < sizeof FIXINGS / sizeof *FIXINGS; k++)
         if (ritz_inp_is(ritz_inp_field(all, 1), FIXINGS[k].word)) {
             support->mask = FIXINGS[k].mask;
-            return RITZ_OK;
+            return check_end(all, 2);
         }
     RITZ_CHECK(ritz_inp_direction(all, 1, &first));
     last = first;
@@ -193,6 +206,7 @@ static ritz_status take_directions(const ritz_inp *all,
                                "begins, at %d",
                                (int)last, (int)first);
     RITZ_CHECK(ritz_inp_real(all, 3, &motion));
+    RITZ_CHECK(check_end(all, 4));
     support->imposed = support->imposed || motion != 0.0;
     for (int64_t c = first; c <= last; c++)
         support->mask |= (uint8_t)(1U << (unsigned)c);
@@ -462,6 +476,20 @@ static ritz_status end_data(const ritz_inp *all)
     return RITZ_OK;
 }
 
+/* A comma at the end of a keyword would make its first data parameters. */
+static ritz_status check_continued(const ritz_inp *all)
+{
+    const ritz_piece odd = all->keyword.odd;
+
+    if (odd.length > 0)
+        return ritz_inp_refuse(all, all->keyword.place,
+                               "'*%.*s' ends with a comma, but '%.*s' in the "
+                               "line that continues it is no parameter",
+                               RITZ_INP_QUOTED(all->keyword.name),
+                               RITZ_INP_QUOTED(odd));
+    return RITZ_OK;
+}
+
 static ritz_status begin_data(ritz_inp *all)
 {
     const ritz_piece *solver = ritz_inp_parameter(&all->keyword, "SOLVER");
@@ -476,9 +504,12 @@ static ritz_status begin_data(ritz_inp *all)
         if (all->step_of_matrices == 0)
             all->step_of_matrices = all->step;
     }
-    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
-        if (ritz_inp_is(all->keyword.name, kinds[k].name))
-            return kinds[k].begin(all, &kinds[k]);
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+        if (!ritz_inp_is(all->keyword.name, kinds[k].name))
+            continue;
+        RITZ_CHECK(check_continued(all));
+        return kinds[k].begin(all, &kinds[k]);
+    }
     return RITZ_OK;
 }
 
@@ -532,7 +563,7 @@ static void ritz_inp_free(ritz_inp *all)
     ritz_deck_reading_free(&all->reading);
     ritz_deck_files_free(&all->files);
     RITZ_FREE(all->fields.field, all->node, all->element, all->joined, all->set,
-              all->member, all->support, all->term, all->constraint);
+              all->slot, all->member, all->support, all->term, all->constraint);
 }
 
 static ritz_status parse_inp(const char *path, const char *bytes, int64_t size,
@@ -546,34 +577,26 @@ static ritz_status parse_inp(const char *path, const char *bytes, int64_t size,
     return ritz_inp_build(&all, out);
 }
 
-/* Whether a line begins with one of these words, in any case. */
+/* Whether a line begins as a keyword does; "*KEYWORD" begins a deck of
+   LS-DYNA, which is another language. */
 static bool begins_deck(ritz_piece line)
 {
-    static const char *const words[] = {
-        "*AMPLITUDE", "*ASSEMBLY",      "*BOUNDARY",    "*ELEMENT",
-        "*ELSET",     "*HEADING",       "*INCLUDE",     "*MATERIAL",
-        "*MATRIX",    "*MODEL",         "*NODE",        "*NSET",
-        "*PARAMETER", "*PART",          "*PREPRINT",    "*RESTART",
-        "*STEP",      "*SHELL SECTION", "*SURFACE",     "*TRANSFORM",
-        "*SYSTEM",    "*SOLID SECTION", "*ORIENTATION", "*USER ELEMENT",
-        "*EQUATION",  "*INSTANCE",
-    };
+    ritz_piece word = {line.text + 1, line.length - 1};
+    const char *comma = NULL;
 
-    for (size_t k = 0; k < sizeof words / sizeof *words; k++) {
-        ritz_piece front = line;
-        int64_t length = (int64_t)strlen(words[k]);
-
-        front.length = length < line.length ? length : line.length;
-        if (ritz_inp_is(front, words[k]))
-            return true;
-    }
-    return false;
+    if (line.length < 2 || *line.text != '*' ||
+        !isalpha((unsigned char)line.text[1]))
+        return false;
+    comma = memchr(word.text, ',', (size_t)word.length);
+    if (comma)
+        word.length = comma - word.text;
+    return !ritz_inp_is(word, "KEYWORD");
 }
 
 /* The first line that is no comment is a keyword. */
 static bool is_inp(const char *bytes, int64_t size)
 {
-    ritz_lines text = {.at = bytes, .end = bytes + size};
+    ritz_lines text = ritz_deck_lines(bytes, size);
 
     while (ritz_lines_next(&text)) {
         ritz_piece line =

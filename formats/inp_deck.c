@@ -143,19 +143,27 @@ static ritz_status list_cells(const ritz_inp *all, ritz_elements *out)
     return RITZ_OK;
 }
 
-/* Directions that elements give to their nodes. */
-static void mark_joined(const ritz_inp *all, uint8_t *mask)
+/* Directions that elements give to their nodes, which must be there unless
+   files that the deck includes are not read. */
+static ritz_status mark_joined(const ritz_inp *all, uint8_t *mask)
 {
     for (int64_t k = 0; k < all->num_elements; k++) {
         const ritz_inp_element *element = &all->element[k];
 
         for (int64_t i = 0; i < element->type->size; i++) {
-            int64_t at = ritz_inp_find(all, all->joined[element->first + i]);
+            const int64_t id = all->joined[element->first + i];
+            const int64_t at = ritz_inp_find(all, id);
 
             if (at >= 0)
                 mask[at] |= element->type->mask;
+            else if (!all->unfollowed)
+                return ritz_inp_refuse(all, element->place,
+                                       "there is no node %" PRId64
+                                       " of element %" PRId64,
+                                       id, element->id);
         }
     }
+    return RITZ_OK;
 }
 
 /* ---- supports ------------------------------------------------------------ */
@@ -177,7 +185,7 @@ static ritz_status note_imposed(const ritz_inp *all,
 static ritz_status list_supports(const ritz_inp *all, ritz_deck *out)
 {
     RITZ_OWN_ARRAY uint8_t *mask = NULL;
-    int64_t work = 0;
+    RITZ_OWN(ritz_inp_marks) marks = {0};
 
     RITZ_CHECK_NEW(mask, all->num_nodes);
     for (int64_t k = 0; k < all->num_supports; k++) {
@@ -185,7 +193,7 @@ static ritz_status list_supports(const ritz_inp *all, ritz_deck *out)
 
         RITZ_CHECK(note_imposed(all, support, out));
         RITZ_CHECK(
-            ritz_inp_mark(all, &support->nodes, support->mask, &work, mask));
+            ritz_inp_mark(all, &support->nodes, support->mask, &marks, mask));
     }
     return ritz_deck_list_dofs(&out->grids, mask, &out->num_fixed, &out->fixed);
 }
@@ -297,7 +305,7 @@ ritz_status ritz_inp_build(ritz_inp *all, ritz_deck *out)
     RITZ_CHECK(settle_nodes(all));
     RITZ_CHECK(place_nodes(all, &out->grids));
     RITZ_CHECK_NEW(mask, all->num_nodes);
-    mark_joined(all, mask);
+    RITZ_CHECK(mark_joined(all, mask));
     RITZ_CHECK(list_cells(all, &out->elements));
     out->num_strange = all->num_strange;
     RITZ_CHECK(list_supports(all, out));

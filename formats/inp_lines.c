@@ -12,6 +12,7 @@
 #include "base/alloc.h"
 #include "formats/inp.h"
 
+#include <ctype.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
@@ -110,7 +111,7 @@ ritz_piece ritz_inp_unquote(ritz_piece piece)
 }
 
 static ritz_status add_parameter(const ritz_inp *all, ritz_piece field,
-                                 ritz_inp_keyword *keyword)
+                                 bool continued, ritz_inp_keyword *keyword)
 {
     const char *equals = NULL;
     ritz_piece value = {field.text + field.length, 0};
@@ -127,7 +128,11 @@ static ritz_status add_parameter(const ritz_inp *all, ritz_piece field,
             (ritz_piece){equals + 1, field.text + field.length - (equals + 1)};
         field.length = equals - field.text;
     }
-    keyword->key[keyword->count] = ritz_piece_trim(field);
+    field = ritz_piece_trim(field);
+    if (continued && keyword->odd.length == 0 &&
+        !isalpha((unsigned char)*field.text))
+        keyword->odd = field;
+    keyword->key[keyword->count] = field;
     keyword->value[keyword->count++] = ritz_inp_unquote(ritz_piece_trim(value));
     return RITZ_OK;
 }
@@ -142,14 +147,17 @@ ritz_status ritz_inp_take_keyword(ritz_inp *all, ritz_piece line)
     line.length--;
     RITZ_CHECK(ritz_inp_split(all, line));
     keyword->count = 0;
+    keyword->odd = (ritz_piece){"", 0};
     keyword->place = fields->place;
     keyword->name = ritz_inp_field(all, 0);
     for (;;) {
         for (int64_t k = from; k < fields->count; k++)
-            RITZ_CHECK(add_parameter(all, fields->field[k], keyword));
+            RITZ_CHECK(
+                add_parameter(all, fields->field[k], from == 0, keyword));
         if (!fields->continues || !ritz_inp_line(all, &line))
             return RITZ_OK;
-        if (*line.text == '*') {
+        if (*line.text == '*' ||
+            place_of_line(all).file != keyword->place.file) {
             all->held = true;
             return RITZ_OK;
         }
@@ -185,8 +193,10 @@ ritz_status ritz_inp_follow(ritz_inp *all)
                                "'*%.*s' ends with a comma, and no line "
                                "continues it",
                                RITZ_INP_QUOTED(all->keyword.name));
-    if (!ritz_deck_top(&all->reading)->folder)
+    if (!ritz_deck_top(&all->reading)->folder) {
+        all->unfollowed = true;
         return RITZ_OK;
+    }
     memcpy(name, input->text, (size_t)input->length);
     ritz_deck_place(&all->reading, where);
     RITZ_CHECK_IN(where, ritz_deck_include(&all->reading, name));

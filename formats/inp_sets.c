@@ -14,22 +14,61 @@
 #include <inttypes.h>
 #include <string.h>
 
-/* Nodes that all lines may name through sets, and sets to look through. */
+/* Nodes and sets that all lines may name through sets. */
 static const int64_t MOST_NAMED = 20000000;
 
 /* ---- as they are written ------------------------------------------------- */
 
+/* FNV-1a of a name in capitals [FowlerNollVo2019]. */
+static uint64_t hash_name(ritz_piece name, bool inner)
+{
+    uint64_t hash = UINT64_C(14695981039346656037) + inner;
+
+    for (int64_t k = 0; k < name.length; k++) {
+        hash ^= (unsigned char)ritz_card_upper(name.text[k]);
+        hash *= UINT64_C(1099511628211);
+    }
+    return hash;
+}
+
+/* The slot of a set, or the empty one where it would be. There are a power of
+   two of them, at least twice as many as sets. */
+static int64_t *find_slot(const ritz_inp *all, ritz_piece name, bool inner)
+{
+    const uint64_t last = (uint64_t)all->num_slots - 1;
+    uint64_t k = hash_name(name, inner) & last;
+
+    while (all->slot[k] > 0) {
+        const ritz_inp_set *set = &all->set[all->slot[k] - 1];
+
+        if (set->inner == inner && ritz_inp_same(set->name, name))
+            break;
+        k = (k + 1) & last;
+    }
+    return &all->slot[k];
+}
+
 static int64_t find_set(const ritz_inp *all, ritz_piece name, bool inner)
 {
+    return all->num_slots > 0 ? *find_slot(all, name, inner) - 1 : -1;
+}
+
+/* Put all sets into twice as many slots. */
+static ritz_status grow_slots(ritz_inp *all)
+{
+    enum { FEWEST = 64 };
+
+    RITZ_FREE(all->slot);
+    all->slot = NULL;
+    all->num_slots = all->num_slots > 0 ? 2 * all->num_slots : FEWEST;
+    RITZ_CHECK_NEW(all->slot, all->num_slots);
     for (int64_t k = 0; k < all->num_sets; k++)
-        if (all->set[k].inner == inner && ritz_inp_same(all->set[k].name, name))
-            return k;
-    return -1;
+        *find_slot(all, all->set[k].name, all->set[k].inner) = k + 1;
+    return RITZ_OK;
 }
 
 ritz_status ritz_inp_open_set(ritz_inp *all, ritz_piece name, int64_t *out)
 {
-    enum { MOST_SETS = 20000 };
     bool inner = all->open.number > 0;
 
     *out = find_set(all, name, inner);
@@ -39,13 +78,13 @@ ritz_status ritz_inp_open_set(ritz_inp *all, ritz_piece name, int64_t *out)
         return ritz_inp_refuse(all, all->keyword.place,
                                "'*%.*s' does not name its set",
                                RITZ_INP_QUOTED(all->keyword.name));
-    if (all->num_sets == MOST_SETS)
-        return ritz_inp_refuse(all, all->keyword.place,
-                               "there are more than %d sets", MOST_SETS);
+    if (2 * (all->num_sets + 1) > all->num_slots)
+        RITZ_CHECK(grow_slots(all));
     RITZ_CHECK_ROOM(all->set, all->num_sets, all->sets_room);
-    *out = all->num_sets;
-    all->set[all->num_sets++] =
+    *out = all->num_sets++;
+    all->set[*out] =
         (ritz_inp_set){.name = name, .inner = inner, .first = -1, .last = -1};
+    *find_slot(all, name, inner) = *out + 1;
     return RITZ_OK;
 }
 
@@ -172,27 +211,25 @@ ritz_status ritz_inp_locate(const ritz_inp *all, const ritz_inp_named *named,
 }
 
 /* Nodes that get the bits of a mask. */
-typedef struct ritz_inp_marking {
+typedef struct inp_marking {
     const ritz_inp *all;
     const ritz_inp_named *named;
     uint8_t mask;
-    int64_t *work;
     uint8_t *into; /* of each node */
     int64_t count; /* sets that are or were gone through, each once */
-    int64_t *set;
-    bool *among;
-} ritz_inp_marking;
+    ritz_inp_marks *marks;
+} inp_marking;
 
-static void ritz_inp_marking_free(ritz_inp_marking *it)
+void ritz_inp_marks_free(ritz_inp_marks *marks)
 {
-    RITZ_FREE(it->set, it->among);
+    RITZ_FREE(marks->set, marks->turn_of);
 }
 
 /* Sets may name each other, and each line may name all of them. */
-static ritz_status spend(const ritz_inp_marking *it, int64_t work)
+static ritz_status spend(const inp_marking *it, int64_t work)
 {
-    *it->work += work;
-    if (*it->work > MOST_NAMED)
+    it->marks->work += work;
+    if (it->marks->work > MOST_NAMED)
         return ritz_inp_refuse(it->all, it->named->place,
                                "supports name more than %" PRId64
                                " nodes, most of them again and again",
@@ -201,8 +238,8 @@ static ritz_status spend(const ritz_inp_marking *it, int64_t work)
 }
 
 /* The nodes of a range that there are. */
-static ritz_status mark_range(const ritz_inp_marking *it, int64_t from,
-                              int64_t to, int64_t step)
+static ritz_status mark_range(const inp_marking *it, int64_t from, int64_t to,
+                              int64_t step)
 {
     const ritz_inp *all = it->all;
     int64_t at = lower_node(all, from);
@@ -215,7 +252,7 @@ static ritz_status mark_range(const ritz_inp_marking *it, int64_t from,
     return RITZ_OK;
 }
 
-static ritz_status mark_named(const ritz_inp_named *named, ritz_inp_marking *it)
+static ritz_status mark_named(const ritz_inp_named *named, inp_marking *it)
 {
     const ritz_inp *all = it->all;
     const ritz_inp_named node = look_inside(all, named);
@@ -223,7 +260,7 @@ static ritz_status mark_named(const ritz_inp_named *named, ritz_inp_marking *it)
 
     if (node.id > 0)
         return mark_range(it, node.id, node.id, 1);
-    RITZ_CHECK(spend(it, all->num_sets));
+    RITZ_CHECK(spend(it, 1));
     set = find_set(all, node.name, node.inner);
     if (set < 0)
         return ritz_inp_refuse(all, named->place,
@@ -234,19 +271,17 @@ static ritz_status mark_named(const ritz_inp_named *named, ritz_inp_marking *it)
                                "the set '%.*s' has the nodes of a set of "
                                "elements, which is not read",
                                RITZ_INP_QUOTED(named->name));
-    if (!it->among[set])
-        it->set[it->count++] = set;
-    it->among[set] = true;
+    if (it->marks->turn_of[set] != it->marks->turn)
+        it->marks->set[it->count++] = set;
+    it->marks->turn_of[set] = it->marks->turn;
     return RITZ_OK;
 }
 
 ritz_status ritz_inp_mark(const ritz_inp *all, const ritz_inp_named *named,
-                          uint8_t mask, int64_t *work, uint8_t *into)
+                          uint8_t mask, ritz_inp_marks *marks, uint8_t *into)
 {
-    int64_t done = *work;
-    RITZ_OWN(ritz_inp_marking)
-    it = {
-        .all = all, .named = named, .mask = mask, .work = &done, .into = into};
+    inp_marking it = {
+        .all = all, .named = named, .mask = mask, .into = into, .marks = marks};
     int64_t at = -1;
 
     if (look_inside(all, named).id > 0) {
@@ -254,11 +289,14 @@ ritz_status ritz_inp_mark(const ritz_inp *all, const ritz_inp_named *named,
         into[at] |= mask;
         return RITZ_OK;
     }
-    RITZ_CHECK_NEW(it.set, all->num_sets);
-    RITZ_CHECK_NEW(it.among, all->num_sets);
+    if (!marks->set)
+        RITZ_CHECK_NEW(marks->set, all->num_sets);
+    if (!marks->turn_of)
+        RITZ_CHECK_NEW(marks->turn_of, all->num_sets);
+    marks->turn++;
     RITZ_CHECK(mark_named(named, &it));
     for (int64_t k = 0; k < it.count; k++)
-        for (int64_t m = all->set[it.set[k]].first; m >= 0;
+        for (int64_t m = all->set[marks->set[k]].first; m >= 0;
              m = all->member[m].next) {
             const ritz_inp_member *one = &all->member[m];
 
@@ -268,6 +306,5 @@ ritz_status ritz_inp_mark(const ritz_inp *all, const ritz_inp_named *named,
             else
                 RITZ_CHECK(mark_named(&one->other, &it));
         }
-    *work = done;
     return RITZ_OK;
 }

@@ -20,6 +20,37 @@ static void each_format_of_decks_says_what_it_is(void **state)
     assert_null(ritz_deck_recognise("GRID\0", 5));
 }
 
+/* An inp deck begins with any keyword; editors put a byte order mark first. */
+static void decks_are_recognised_by_their_first_line(void **state)
+{
+    static const struct {
+        const char *text;
+        const ritz_deck_format *format;
+    } cases[] = {
+        {"*PHYSICAL CONSTANTS, ABSOLUTE ZERO=0\n", &ritz_deck_inp},
+        {"** GRID\n\n *Contact\n", &ritz_deck_inp},
+        {"\xef\xbb\xbf*HEADING\n", &ritz_deck_inp},
+        {"\xef\xbb\xbfGRID,1\n", &ritz_deck_nastran},
+        {"*KEYWORD\n*NODE\n", &ritz_deck_nastran}, /* LS-DYNA */
+        {"*KEYWORD, MEMORY=100m\n", &ritz_deck_nastran},
+        {"* 7\n", &ritz_deck_nastran},
+        {"*\n", &ritz_deck_nastran},
+    };
+    RITZ_OWN(ritz_deck) deck = {0};
+
+    (void)state;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
+        assert_ptr_equal(
+            ritz_deck_recognise(cases[k].text, (int64_t)strlen(cases[k].text)),
+            cases[k].format);
+    assert_ok(ritz_deck_parse("a.bdf", "\xef\xbb\xbfGRID,1\n", 10, ".", &deck));
+    assert_int_equal(deck.grids.count, 1);
+    ritz_deck_free(&deck);
+    assert_ok(
+        ritz_deck_parse("a.inp", "\xef\xbb\xbf*NODE\n4\n", 11, ".", &deck));
+    assert_int_equal(deck.grids.id[0], 4);
+}
+
 static void a_deck_names_its_format_and_all_its_dofs(void **state)
 {
     static const char TEXT[] = "GRID,7\nGRID,2\nSPOINT,5\n";
@@ -55,6 +86,7 @@ static void bytes_that_are_no_deck_are_refused(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(each_format_of_decks_says_what_it_is),
+    cmocka_unit_test(decks_are_recognised_by_their_first_line),
     cmocka_unit_test(a_deck_names_its_format_and_all_its_dofs),
     cmocka_unit_test(bytes_that_are_no_deck_are_refused),
 };

@@ -86,6 +86,8 @@ static void a_node_has_the_rows_of_its_elements(void **state)
 static void elements_are_drawn_as_they_are_written(void **state)
 {
     static const char TEXT[] =
+        "*NODE\n1\n2\n3\n4\n5\n6\n7\n8\n9\n10\n11\n12\n13\n14\n15\n16\n17\n"
+        "18\n19\n20\n"
         "*ELEMENT, TYPE=C3D20R\n7, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10,\n"
         "11, 12, 13, 14, 15\n16, 17, 18, 19, 20\n" /* the comma may miss */
         "*ELEMENT, TYPE=C3D15\n8,1,2,3,4,5,6,7,8,\n9,10,11,12,13,14,15,\n"
@@ -282,6 +284,15 @@ static const struct {
     {"*NODE\n1\n*BOUNDARY\n2, 1\n", "line 4: there is no node 2"},
     {"*BOUNDARY\n1, 11\n", "'11' in '*BOUNDARY' is not a direction, 1 to"},
     {"*BOUNDARY\n1\n", "field 2 of '*BOUNDARY' is blank where a direction"},
+    {"*NODE\n1\n*BOUNDARY\n1, 1, 3, 0., 9\n",
+     "line 4: '9' in '*BOUNDARY' is one field too many"},
+    {"*NODE\n1\n*BOUNDARY\n1, PINNED, 3\n",
+     "line 4: '3' in '*BOUNDARY' is one field too many"},
+    {"*NODE\n1\n*ELEMENT, TYPE=C3D4\n9,\n1, 2, 3, 4\n",
+     "line 4: there is no node 2 of element 9"},
+    {"*NODE,\n1, 0.\n", "line 1: '*NODE' ends with a comma, but '1' in the "
+                        "line that continues it is no parameter"},
+    {"*NSET, NSET=A,\nB, 7\n", "line 1: '*NSET' ends with a comma, but '7'"},
     {"*BOUNDARY\n1, 3, 1\n", "'*BOUNDARY' ends at direction 1, before it "
                              "begins, at 3"},
     {"*NODE\n1\n*NSET, NSET=A, ELSET=E\n*BOUNDARY\nA, 1\n",
@@ -375,6 +386,35 @@ static void included_lines_go_on_with_the_data_above(void **state)
     folder_write("loop.inp", "*INCLUDE, INPUT=loop.inp\n");
     assert_fails(ritz_deck_read(folder_path("loop.inp"), &deck),
                  RITZ_ERR_FORMAT, "includes itself");
+}
+
+/* It is the end of its file, not the next line of the other one. */
+static void a_comma_at_the_end_of_a_file_continues_nothing(void **state)
+{
+    RITZ_OWN(ritz_deck) deck = {0};
+
+    (void)state;
+    folder_write("top.inp", "*INCLUDE, INPUT=comma.inp\n7, 1.\n8, 2.\n");
+    folder_write("comma.inp", "*NODE,\n");
+    assert_ok(ritz_deck_read(folder_path("top.inp"), &deck));
+    assert_int_equal(deck.grids.count, 2);
+    assert_int_equal(deck.grids.id[0], 7);
+    folder_write("top.inp", "*NODE\n7\n*INCLUDE, INPUT=comma.inp\nSIZE=3\n");
+    folder_write("comma.inp", "*NSET, NSET=A,\n");
+    assert_ok(ritz_deck_read(folder_path("top.inp"), &deck));
+}
+
+/* Nodes may be in a file that is not read. */
+static void without_included_files_nodes_may_be_missing(void **state)
+{
+    static const char TEXT[] = "*INCLUDE, INPUT=nodes.inp\n*NODE\n1\n"
+                               "*ELEMENT, TYPE=MASS\n1, 1\n2, 2\n";
+    RITZ_OWN(ritz_deck) deck = {0};
+
+    (void)state;
+    assert_ok(
+        ritz_deck_parse("t.inp", TEXT, (int64_t)strlen(TEXT), NULL, &deck));
+    assert_int_equal(deck.num_dofs, 3);
 }
 
 static void files_outside_the_decks_folder_are_not_quoted(void **state)
@@ -573,6 +613,30 @@ static void supports_without_end_are_refused(void **state)
     free(text);
 }
 
+/* Neither names nor supports go through all of the sets. */
+static void many_sets_are_found_at_once(void **state)
+{
+    enum { SETS = 60000 };
+    char *text = malloc(64 * SETS);
+    size_t used = 0;
+    RITZ_OWN(ritz_deck) deck = {0};
+
+    (void)state;
+    assert_non_null(text);
+    used += (size_t)sprintf(text, "*NODE\n");
+    for (int k = 1; k <= SETS; k++)
+        used += (size_t)sprintf(text + used, "%d\n", k);
+    for (int k = 1; k <= SETS; k++)
+        used += (size_t)sprintf(text + used, "*NSET, NSET=Set-%d\n%d\n", k, k);
+    used += (size_t)sprintf(text + used, "*BOUNDARY\n");
+    for (int k = 2; k <= SETS; k++)
+        used += (size_t)sprintf(text + used, "SET-%d, 2\n", k);
+    assert_ok(parse(text, &deck));
+    assert_int_equal(deck.num_fixed, SETS - 1);
+    assert_int_equal(deck.fixed[0].grid, 2);
+    free(text);
+}
+
 static void every_allocation_may_fail(void **state)
 {
     (void)state;
@@ -591,12 +655,15 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(what_a_deck_cannot_mean_is_refused),
     cmocka_unit_test(too_many_parameters_are_refused),
     cmocka_unit_test(included_lines_go_on_with_the_data_above),
+    cmocka_unit_test(a_comma_at_the_end_of_a_file_continues_nothing),
+    cmocka_unit_test(without_included_files_nodes_may_be_missing),
     cmocka_unit_test(files_outside_the_decks_folder_are_not_quoted),
     cmocka_unit_test(matrices_get_the_rows_of_the_deck),
     cmocka_unit_test(rows_of_a_real_deck_are_those_of_calculix),
     cmocka_unit_test(rows_of_real_decks_are_as_many_as_those_of_abaqus),
     cmocka_unit_test(a_deck_cut_or_corrupted_anywhere_ends_well),
     cmocka_unit_test(supports_without_end_are_refused),
+    cmocka_unit_test(many_sets_are_found_at_once),
     cmocka_unit_test(every_allocation_may_fail),
 };
 
