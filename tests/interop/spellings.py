@@ -96,6 +96,27 @@ def bulk(part):
     return lines + ["ENDDATA"]
 
 
+def cdb(part):
+    """ANSYS: nodes and SOLID185 in blocks, supports [Ansys2024]."""
+    lines = ["/COM,ANSYS RELEASE 2024 R1", "/PREP7", "ET,1,185",
+             f"NBLOCK,6,SOLID,{part.node[-1]:10d},{len(part.node):10d}",
+             "(3i9,6e21.13e3)"]
+    for n, at in zip(part.node, part.at):
+        words = [f"{v:.13E}".split("E") for v in at]
+        lines.append(f"{n:9d}{0:9d}{0:9d}" + "".join(
+            f"{m}E{int(e):+04d}".rjust(21) for m, e in words))
+    elements = list(part.elements())
+    lines += ["N,R5.3,LOC,       -1,",
+              f"EBLOCK,19,SOLID,{len(elements):10d},{len(elements):10d}",
+              "(19i9)"]
+    lines += ["".join(f"{v:9d}" for v in
+                      [1, 1, 1, 1, 0, 0, 0, 0, 8, 0, e + 1] + nodes)
+              for e, nodes in enumerate(elements)] + [f"{-1:9d}"]
+    lines += [f"D,{part.node[k]:9d},U{axis}  , 0.000000000    , 0.000000000"
+              for k in part.held for axis in "XYZ"]
+    return lines + ["FINISH"]
+
+
 # ---- spellings ------------------------------------------------------------------
 
 def calculix(part, tools):
@@ -176,15 +197,15 @@ def boeing(title, A):
 
 
 def ansys(part, tools):
-    """HBMAT of the free rows, a mapping file, nodes as GRID [AnsysHbmat2024]."""
+    """HBMAT of the free rows, a mapping file, a database [AnsysHbmat2024]."""
     write(tools, "stiff.matrix", boeing("STIFFNESS", part.free(part.K)))
     write(tools, "mass.matrix", boeing("MASS", part.free(part.M)))
     write(tools, "stiff.mapping", ["Matrix Eqn     Node   DOF"] + [
         f"{k + 1:10d}{part.dof[r][0]:10d}   U{'XYZ'[part.dof[r][1] - 1]}"
         for k, r in enumerate(part.rows)])
-    write(tools, "ansys.bdf", bulk(part))
+    write(tools, "part.cdb", cdb(part))
     return ("stiff.matrix", "mass.matrix", "--dofs", "stiff.mapping", "--bulk",
-            "ansys.bdf")
+            "part.cdb")
 
 
 def ansys_market(part, tools):
@@ -196,8 +217,8 @@ def ansys_market(part, tools):
             f"{len(part.rows)} {len(part.rows)} {len(rows)}"]
             + [f"{i + 1} {j + 1} {v:.16e}" for i, j, v in rows])
     write(tools, "e.map", ["{} {}".format(*part.dof[r]) for r in part.rows])
-    write(tools, "ansys.bdf", bulk(part))
-    return "eK.mtx", "eM.mtx", "--dofs", "e.map", "--bulk", "ansys.bdf"
+    write(tools, "e.cdb", cdb(part))
+    return "eK.mtx", "eM.mtx", "--dofs", "e.map", "--bulk", "e.cdb"
 
 
 def record(data):

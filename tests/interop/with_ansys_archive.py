@@ -5,14 +5,17 @@ import pathlib
 import sys
 import tempfile
 
-import h5py
-import mapdl_archive
-import numpy
-import scipy.io
-import scipy.sparse
-from mapdl_archive import examples
+from common import Tap, Tools, skip
 
-from common import Tap, Tools
+try:
+    import h5py
+    import mapdl_archive
+    import numpy
+    import scipy.io
+    import scipy.sparse
+    from mapdl_archive import examples
+except ImportError as missing:
+    skip(missing)
 
 FOLDER = pathlib.Path(examples.__file__).resolve().parent
 
