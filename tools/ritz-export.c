@@ -6,13 +6,12 @@ static void list_formats(void)
     for (const ritz_exporter *const *e = ritz_exporters; *e; e++)
         printf("%-16s %-9s %-52s [%s]\n", (*e)->name, (*e)->kind, (*e)->summary,
                (*e)->reference);
-    printf("\nreduced: a reduced component and, but for dmig and exudyn,\n"
-           "a system at a configuration (--at; for basilisk,\nopenfast and "
-           "simscape "
-           "--component names its\nbodies), either of which --states makes "
-           "a state space,\nor a state space.\nshapes: modes of a component, "
-           "of a reduced component, or of a system, whose bodies\n--component "
-           "names; but for uff, columns of a basis.\n");
+    printf("\nreduced: a reduced component and, but for dmig and exudyn, a "
+           "system at a\nconfiguration (--at; for basilisk, openfast and "
+           "simscape --component names its\nbodies), either of which --states "
+           "makes a state space, or a state space.\nshapes: modes of a "
+           "component, of a reduced component, or of a system, whose bodies\n"
+           "--component names; but for uff, columns of a basis.\n");
 }
 
 /* Choose the exporter, and refuse options that it does not take. */
