@@ -6,12 +6,13 @@ static void list_formats(void)
     for (const ritz_exporter *const *e = ritz_exporters; *e; e++)
         printf("%-16s %-9s %-52s [%s]\n", (*e)->name, (*e)->kind, (*e)->summary,
                (*e)->reference);
-    printf("\nreduced: a reduced component and, but for dmig and exudyn, a "
-           "system at a\nconfiguration (--at; for basilisk, openfast and "
-           "simscape --component names its\nbodies), either of which --states "
-           "makes a state space, or a state space.\nshapes: modes of a "
-           "component, of a reduced component, or of a system, whose bodies\n"
-           "--component names; but for uff, columns of a basis.\n");
+    printf(
+        "\nreduced: a reduced component and, but for dmig and exudyn, a "
+        "system at a\nconfiguration (--at; for basilisk, chrono, openfast and "
+        "simscape --component names its\nbodies), either of which --states "
+        "makes a state space, or a state space.\nshapes: modes of a "
+        "component, of a reduced component, or of a system, whose bodies\n"
+        "--component names; but for uff, columns of a basis.\n");
 }
 
 /* Choose the exporter, and refuse options that it does not take. */
@@ -54,8 +55,8 @@ int main(int argc, char **argv)
                  "as NASTRAN-95 wants it: marked continuations, both "
                  "triangles, exponents with a D (dmig)"),
         CLI_TEXT("port", &request->ports, "NAME[,NAME]",
-                 "ports whose grids are the interface (basilisk, openfast, "
-                 "openfast-4, simscape) [those attached]"),
+                 "ports whose grids are the interface (basilisk, chrono, "
+                 "openfast, openfast-4, simscape) [those attached]"),
         MODEL_OPTIONS(&given.model),
         CLI_FLAG("states", &given.states,
                  "write the states x' = A x + B u, y = C x + D u, with damping "

@@ -135,6 +135,7 @@ typedef struct ritz_exporter {
 /** All exporters, ended by NULL. */
 extern const ritz_exporter *const ritz_exporters[];
 extern const ritz_exporter ritz_exporter_basilisk;
+extern const ritz_exporter ritz_exporter_chrono;
 extern const ritz_exporter ritz_exporter_container;
 extern const ritz_exporter ritz_exporter_dmig;
 extern const ritz_exporter ritz_exporter_exudyn;

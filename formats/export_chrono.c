@@ -1,0 +1,136 @@
+/*
+ * Matrices for a load of Project Chrono between bodies and shafts
+ * [Chrono2025], as text that a few lines of C++ read, and any other program:
+ *
+ *     # comments: the certificate
+ *     frames K
+ *     GRID X Y Z            K lines: interface frames at rest, basic axes
+ *     modes N
+ *     HERTZ                 N lines: with the frames held; 0: no stiffness
+ *     M                     6 K + N lines of as many numbers; then K and D
+ *
+ * Coordinates are six small motions of each frame, translations before
+ * rotations, and then modes. Numbers have 17 digits.
+ */
+#include "base/alloc.h"
+#include "base/tolerances.h"
+#include "formats/certificate.h"
+#include "formats/sink.h"
+#include "model/interface_form.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+
+typedef struct chrono_load {
+    ritz_interface_form form;
+    double *hertz; /* of the modes */
+    char *certificate;
+} chrono_load;
+
+static void chrono_load_free(chrono_load *load)
+{
+    ritz_interface_form_free(&load->form);
+    RITZ_FREE(load->hertz, load->certificate);
+}
+
+static int64_t count_modes(const chrono_load *load)
+{
+    return load->form.K.ncol - RITZ_FRAME_MOTIONS * load->form.count;
+}
+
+/* Frequencies with the frames held; of coordinates that were kept they are
+   those of K and M among the modes. */
+static ritz_status list_frequencies(chrono_load *load)
+{
+    const int64_t first = RITZ_FRAME_MOTIONS * load->form.count;
+    const int64_t m = count_modes(load);
+    RITZ_OWN(ritz_dense) K = {0}, M = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
+
+    RITZ_CHECK_NEW(load->hertz, m);
+    if (m == 0)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_dense_block(&load->form.K, first, m, first, m, &K));
+    RITZ_CHECK(ritz_dense_block(&load->form.M, first, m, first, m, &M));
+    RITZ_CHECK(ritz_eigen_dense(&K, &M, &pairs));
+    for (int64_t k = pairs.num_rigid; k < pairs.Phi.ncol; k++)
+        load->hertz[k] = ritz_eigen_hertz(pairs.lambda[k]);
+    return RITZ_OK;
+}
+
+/* Rows of a matrix; {0}: of zeros. */
+static void put_matrix(FILE *file, const char *name, const ritz_dense *A,
+                       int64_t order)
+{
+    fprintf(file, "%s\n", name);
+    for (int64_t i = 0; i < order; i++)
+        for (int64_t j = 0; j < order; j++)
+            fprintf(file, "%.17g%c", A->val ? ritz_dense_col(A, j)[i] : 0.0,
+                    j + 1 < order ? ' ' : '\n');
+}
+
+static ritz_status put_load(FILE *file, const void *what)
+{
+    const chrono_load *load = what;
+    const ritz_interface_form *form = &load->form;
+
+    ritz_comment_put(file, "# ", 0, load->certificate);
+    fprintf(file, "frames %" PRId64 "\n", form->count);
+    for (int64_t k = 0; k < form->count; k++)
+        fprintf(file, "%" PRId64 " %.17g %.17g %.17g\n", form->grid[k],
+                form->position[3 * k], form->position[3 * k + 1],
+                form->position[3 * k + 2]);
+    fprintf(file, "modes %" PRId64 "\n", count_modes(load));
+    for (int64_t k = 0; k < count_modes(load); k++)
+        fprintf(file, "%.17g\n", load->hertz[k]);
+    put_matrix(file, "M", &form->M, form->K.ncol);
+    put_matrix(file, "K", &form->K, form->K.ncol);
+    put_matrix(file, "D", &form->D, form->K.ncol);
+    return RITZ_OK;
+}
+
+static ritz_status say_load(const chrono_load *load,
+                            const ritz_reduced *reduced,
+                            ritz_export_report *report)
+{
+    double rigid = 0.0, flexible = 0.0;
+
+    RITZ_CHECK(ritz_interface_form_held(&load->form, &rigid, &flexible));
+    RITZ_CHECK(ritz_export_say(
+        report, "%" PRId64 " interface %s and %" PRId64 " modes; all digits",
+        load->form.count, load->form.count == 1 ? "frame" : "frames",
+        count_modes(load)));
+    if (rigid > RITZ_HELD * flexible)
+        RITZ_CHECK(ritz_export_say(report,
+                                   "the ground holds the body, its motion as a "
+                                   "rigid one is at %.3g Hz",
+                                   rigid));
+    if (reduced->K4.val)
+        RITZ_CHECK(ritz_export_say(report, "structural damping is left out"));
+    return ritz_export_say(report,
+                           "the matrices are of small motions about the place "
+                           "at rest; inputs, outputs and shapes are left out");
+}
+
+static ritz_status write_load(const ritz_export_object *object,
+                              const ritz_export_request *request,
+                              ritz_export_report *report)
+{
+    RITZ_OWN(chrono_load) load = {0};
+
+    RITZ_CHECK(
+        ritz_interface_form_of(object->reduced, request->ports, &load.form));
+    RITZ_CHECK(list_frequencies(&load));
+    RITZ_CHECK(ritz_certificate(object, request->stamp, &load.certificate));
+    RITZ_CHECK(ritz_sink_write(request->output, put_load, &load));
+    return say_load(&load, object->reduced, report);
+}
+
+const ritz_exporter ritz_exporter_chrono = {
+    .name = "chrono",
+    .summary = "matrices of frames and modes for Project Chrono, text",
+    .reference = "Chrono2025",
+    .kind = "reduced",
+    .takes = RITZ_EXPORT_REDUCED | RITZ_EXPORT_PORTS,
+    .write = write_load,
+};
