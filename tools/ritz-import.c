@@ -17,7 +17,8 @@ int main(int argc, char **argv)
     ritz_import_request *const it = &given.request;
     const cli_option options[] = {
         CLI_TEXT("stiffness", &it->stiffness, "F",
-                 "matrix K, F being FILE[:NAME[#K]] [none: a rigid body]"),
+                 "matrix K, F being FILE[:NAME[#K]]; a complex one is K + i K4 "
+                 "[none: a rigid body]"),
         CLI_TEXT("mass", &it->mass, "F", "matrix M"),
         CLI_TEXT("damping", &it->damping, "F", "viscous damping D"),
         CLI_TEXT("structural-damping", &it->structural_damping, "F",
@@ -25,7 +26,8 @@ int main(int argc, char **argv)
         CLI_LIST("geometric-stiffness", &given.load, "F@LOAD",
                  "K_g for a unit of LOAD: stored, no tool uses it yet"),
         CLI_TEXT("bulk", &it->bulk, "F",
-                 "deck of NASTRAN, Abaqus or CalculiX: grids, frames, sets"),
+                 "deck of NASTRAN, Abaqus, ANSYS or CalculiX: grids, frames, "
+                 "sets"),
         CLI_TEXT("dofs", &it->dofs, "F",
                  "names of rows: GRID COMP or GRID.COMP a line, 0: a point"),
         CLI_TEXT("rows", &it->rows, "COMPS",

@@ -284,6 +284,48 @@ static void ritz_parts_free(ritz_parts *parts)
 
 /* ---- all of it ---------------------------------------------------------- */
 
+/* Leave out imaginary parts that are all zero. */
+static void drop_zeros(ritz_matrix *m)
+{
+    if (!m->imaginary || !m->A.colptr)
+        return;
+    for (int64_t k = 0; k < m->A.colptr[m->A.ncol]; k++)
+        if (m->imaginary[k] != 0.0)
+            return;
+    free(m->imaginary);
+    m->imaginary = NULL;
+}
+
+/* A complex stiffness is K + i K4, unless K4 has a matrix of its own. There is
+   room for one part more. */
+static ritz_status split_stiffness(ritz_component *component, ritz_parts *parts)
+{
+    ritz_part *whole = &parts->part[0];
+    ritz_part *more = &parts->part[parts->count];
+
+    if (whole->becomes != &component->K || !whole->matrix.imaginary)
+        return RITZ_OK;
+    for (int64_t k = 1; k < parts->count; k++)
+        if (parts->part[k].becomes == &component->K4)
+            return RITZ_OK;
+    *more = (ritz_part){.spec = whole->spec,
+                        .what = "structural damping",
+                        .becomes = &component->K4,
+                        .matrix = {.symmetric = whole->matrix.symmetric,
+                                   .digits = whole->matrix.digits}};
+    parts->count++;
+    RITZ_CHECK(ritz_sparse_copy(&whole->matrix.A, &more->matrix.A));
+    memcpy(more->matrix.A.val, whole->matrix.imaginary,
+           (size_t)more->matrix.A.colptr[more->matrix.A.ncol] *
+               sizeof *more->matrix.A.val);
+    if (whole->matrix.row)
+        RITZ_CHECK_COPY(more->matrix.row, whole->matrix.row,
+                        whole->matrix.A.nrow);
+    free(whole->matrix.imaginary);
+    whole->matrix.imaginary = NULL;
+    return RITZ_OK;
+}
+
 static ritz_status check_matrix(const ritz_part *part)
 {
     const ritz_matrix *A = &part->matrix;
@@ -292,7 +334,9 @@ static ritz_status check_matrix(const ritz_part *part)
                    "'%s' is %" PRId64 " x %" PRId64 ", a square matrix is due",
                    part->spec, A->A.nrow, A->A.ncol);
     RITZ_REFUSE_IF(A->imaginary, RITZ_ERR_FORMAT,
-                   "'%s' is complex, a real matrix is due", part->spec);
+                   "'%s' is complex: only a stiffness may be, K + i K4, "
+                   "without another structural damping",
+                   part->spec);
     return RITZ_OK;
 }
 
@@ -355,7 +399,7 @@ static ritz_status list_parts(const ritz_import_request *request,
 
     RITZ_REFUSE_IF(!request->mass, RITZ_ERR_ARGUMENT,
                    "no mass matrix is given, without one nothing can move");
-    RITZ_CHECK_NEW(parts->part, most + request->num_loads);
+    RITZ_CHECK_NEW(parts->part, most + request->num_loads + 1);
     RITZ_CHECK_NEW(component->load, request->num_loads);
     for (int64_t k = 0; k < most; k++)
         if (table[k].spec)
@@ -383,6 +427,10 @@ static ritz_status take_parts(const ritz_import_request *request,
     if (request->frequencies)
         RITZ_CHECK(ritz_modal_make(request, component, parts));
     for (int64_t k = 0; k < parts->count; k++)
+        drop_zeros(&parts->part[k].matrix);
+    if (!request->frequencies)
+        RITZ_CHECK(split_stiffness(component, parts));
+    for (int64_t k = 0; k < parts->count; k++)
         RITZ_CHECK_IN(parts->part[k].what, check_matrix(&parts->part[k]));
     return RITZ_OK;
 }
@@ -399,8 +447,8 @@ ritz_status ritz_import_units(const char *text, char out[RITZ_NAME_SIZE])
     return RITZ_OK;
 }
 
-/* Grids of rows and of recovered dofs, and held ones; the origin for a single grid without a
- * deck. */
+/* Grids of rows, of recovered dofs and of held ones; the origin for a single
+ * grid without a deck. */
 static ritz_status place_grids(ritz_deck *deck, const ritz_row_names *kept,
                                ritz_component *component)
 {
