@@ -303,7 +303,8 @@ static ritz_status split_stiffness(ritz_component *component, ritz_parts *parts)
     ritz_part *whole = &parts->part[0];
     ritz_part *more = &parts->part[parts->count];
 
-    if (whole->becomes != &component->K || !whole->matrix.imaginary)
+    if (whole->becomes != &component->K || !whole->matrix.imaginary ||
+        !whole->matrix.A.colptr)
         return RITZ_OK;
     for (int64_t k = 1; k < parts->count; k++)
         if (parts->part[k].becomes == &component->K4)
@@ -316,7 +317,7 @@ static ritz_status split_stiffness(ritz_component *component, ritz_parts *parts)
     parts->count++;
     RITZ_CHECK(ritz_sparse_copy(&whole->matrix.A, &more->matrix.A));
     memcpy(more->matrix.A.val, whole->matrix.imaginary,
-           (size_t)more->matrix.A.colptr[more->matrix.A.ncol] *
+           (size_t)whole->matrix.A.colptr[whole->matrix.A.ncol] *
                sizeof *more->matrix.A.val);
     if (whole->matrix.row)
         RITZ_CHECK_COPY(more->matrix.row, whole->matrix.row,
