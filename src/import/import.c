@@ -316,9 +316,10 @@ static ritz_status split_stiffness(ritz_component *component, ritz_parts *parts)
                                    .digits = whole->matrix.digits}};
     parts->count++;
     RITZ_CHECK(ritz_sparse_copy(&whole->matrix.A, &more->matrix.A));
-    memcpy(more->matrix.A.val, whole->matrix.imaginary,
-           (size_t)whole->matrix.A.colptr[whole->matrix.A.ncol] *
-               sizeof *more->matrix.A.val);
+    for (int64_t k = 0;
+         more->matrix.A.val && k < whole->matrix.A.colptr[whole->matrix.A.ncol];
+         k++)
+        more->matrix.A.val[k] = whole->matrix.imaginary[k];
     if (whole->matrix.row)
         RITZ_CHECK_COPY(more->matrix.row, whole->matrix.row,
                         whole->matrix.A.nrow);
