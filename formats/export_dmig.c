@@ -309,6 +309,7 @@ typedef struct dmig_audit {
     double lowest;        /* eigenvalue over first flexible one, rounded */
     double rigid_hz, first_hz;
     double to_hz, change; /* of frequencies in the band */
+    char indefinite[160]; /* what the rounded mass has; empty: it is definite */
 } dmig_audit;
 
 /* max|A r| / max|A| over rigid modes r whose largest entry is 1. */
@@ -363,6 +364,29 @@ static void compare_frequencies(const ritz_pairs *exact,
     }
 }
 
+/*
+ * Pairs of the rounded matrices. Rounding gives motions without mass some, of
+ * either sign. It changes M_ij by at most c |M_ij| <= c sqrt(M_ii M_jj), hence
+ * M + n c diag(M) is semidefinite, and changes frequencies by n c / 2.
+ */
+static ritz_status find_rounded(const dmig_deck *deck, dmig_audit *audit,
+                                ritz_pairs *out)
+{
+    const dmig_matrix *K = &deck->matrix[0], *M = &deck->matrix[1];
+    const double share = (double)deck->order * M->change;
+    RITZ_OWN(ritz_dense) padded = {0};
+    const ritz_status status = ritz_eigen_dense(&K->rounded, &M->rounded, out);
+
+    if (status != RITZ_ERR_SINGULAR)
+        return status;
+    snprintf(audit->indefinite, sizeof audit->indefinite, "%s",
+             ritz_error_message());
+    RITZ_CHECK(ritz_dense_copy(&M->rounded, &padded));
+    for (int64_t j = 0; j < deck->order; j++)
+        ritz_dense_col(&padded, j)[j] *= 1.0 + share;
+    return ritz_eigen_dense(&K->rounded, &padded, out);
+}
+
 static ritz_status audit_rounding(const dmig_deck *deck, dmig_audit *out)
 {
     const dmig_matrix *K = &deck->matrix[0]; /* always there, and first */
@@ -372,7 +396,7 @@ static ritz_status audit_rounding(const dmig_deck *deck, dmig_audit *out)
 
     RITZ_CHECK_IN("modes", ritz_eigen_dense(&K->exact, &M->exact, &exact));
     RITZ_CHECK_IN("modes of the rounded matrices",
-                  ritz_eigen_dense(&K->rounded, &M->rounded, &rounded));
+                  find_rounded(deck, &audit, &rounded));
     audit.motions = exact.num_rigid;
     audit.left = rounded.num_rigid;
     RITZ_CHECK(find_residual(&K->exact, &exact, &audit.before));
@@ -453,6 +477,10 @@ static ritz_status say_audit(const dmig_audit *audit,
     else
         RITZ_CHECK(ritz_export_say(report, "no motion is rigid: the body is "
                                            "held by its own stiffness"));
+    if (*audit->indefinite)
+        RITZ_CHECK(ritz_export_say(
+            report, "warning: rounded, the %s; output4 keeps all digits",
+            audit->indefinite));
     if (audit->first_hz > 0.0)
         RITZ_CHECK(ritz_export_say(
             report,

@@ -110,32 +110,29 @@ static bool print_scaled(const large_figures *f, int width, large_field *field)
     return true;
 }
 
-static void print_number(double x, large_field *field)
+static void print_number(double x, bool lettered,
+                         char out[static RITZ_LARGE_FIELD_SIZE])
 {
     const int width = x < 0.0 ? FIELD - 1 : FIELD;
+    large_field field = {.text = out, .lettered = lettered};
 
-    snprintf(field->text, RITZ_LARGE_FIELD_SIZE,
-             field->lettered ? "0.D0" : "0.");
+    snprintf(out, RITZ_LARGE_FIELD_SIZE, lettered ? "0.D0" : "0.");
     for (int n = MOST_FIGURES; x != 0.0 && n > 0; n--) {
         const large_figures f = round_to(x, n);
 
-        if ((!field->lettered && print_fixed(&f, width, field)) ||
-            print_scaled(&f, width, field))
+        if ((!lettered && print_fixed(&f, width, &field)) ||
+            print_scaled(&f, width, &field))
             return;
     }
 }
 
 void ritz_large_field_print(double x, char out[static RITZ_LARGE_FIELD_SIZE])
 {
-    large_field field = {.text = out};
-
-    print_number(x, &field);
+    print_number(x, false, out);
 }
 
 void ritz_large_field_print_double(double x,
                                    char out[static RITZ_LARGE_FIELD_SIZE])
 {
-    large_field field = {.text = out, .lettered = true};
-
-    print_number(x, &field);
+    print_number(x, true, out);
 }
