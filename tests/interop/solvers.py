@@ -37,8 +37,8 @@ def run(command, folder, log, seconds=300, **more):
 
 
 def run_nastran95(deck, folder):
-    """Printed output. Unit 14 of OUTPUT4 lands in the file deck.op4, unit 15
-    in deck.op4b; deck is a file name with ending in folder."""
+    """Printed output; unit -14 of OUTPUT4 lands in deck.op4. Positive units are
+    dense, and full columns end the program."""
     folder, stem = pathlib.Path(folder), pathlib.Path(deck).stem
     scratch = folder / (stem + ".scratch")
     scratch.mkdir(exist_ok=True)
@@ -51,10 +51,9 @@ def run_nastran95(deck, folder):
         here[f"SOF{k}"] = "none"
     for k in range(11, 24):
         here[f"FTN{k}"] = str(scratch / f"unit{k}")
-    for unit, ending in ("14", ".op4"), ("15", ".op4b"):
-        path = folder / (stem + ending)
-        path.unlink(missing_ok=True)  # it opens no file that is there already
-        here["FTN" + unit] = str(path)
+    matrices = folder / (stem + ".op4")
+    matrices.unlink(missing_ok=True)  # it opens no file that is there already
+    here["FTN14"] = str(matrices)
     with open(folder / deck) as text:
         return run([NASTRAN95], folder, stem + ".out", stdin=text, env=here)
 

@@ -162,6 +162,42 @@ def sparse(group):
         group.attrs["shape"]).toarray()
 
 
+def eigenvalues(K, M):
+    return scipy.linalg.eigh(K, M, eigvals_only=True)
+
+
+def check_craig_bampton(tap, tools):
+    """MYSTRAN's own reduction of the outboard part to four grids and sixteen
+    modes has the eigenvalues of ours, of the matrices that it wrote."""
+    deck = EXTERNAL / "nastran/public_solvers/mystran_outboard_cb.dat"
+    if not deck.is_file():
+        return
+    (tools.folder / "theirs.dat").write_text(deck.read_text())
+    run_mystran("theirs.dat", tools.folder)
+    (tools.folder / "theirs.dofs").write_text(
+        "".join(f"{k} 0\n" for k in range(1, 41)))
+    tools("ritz-import", "--stiffness", "theirs.OU1:KXX", "--mass",
+          "theirs.OU1:MXX", "--dofs", "theirs.dofs", "-o", "theirs.h5")
+    stem = "mystran_outboard"  # check_external made it
+    tools("ritz-import", "--stiffness", stem + ".OU1:KGG", "--mass",
+          stem + ".OU1:MGG", "--bulk", stem + ".dat", "--port",
+          "inboard=3,11,19,27", "-o", "outboard.h5")
+    tools("ritz-basis", "craig-bampton", "--modes", 16, "outboard.h5", "-o",
+          "fixed.h5")
+    tools("ritz-reduce", "outboard.h5", "fixed.h5", "-o", "ours.h5")
+    with h5py.File(tools.path("theirs.h5")) as f:
+        theirs = eigenvalues(sparse(f["K"]), sparse(f["M"]))
+    with h5py.File(tools.path("ours.h5")) as f:
+        ours = eigenvalues(f["K"][:], f["M"][:])
+    # rounding of the largest, and 16 modes to the residual of Lanczos
+    allowed = (4.0 * numpy.finfo(float).eps * ours[-1]
+               + 1e-8 * numpy.abs(ours))
+    tap.check(len(theirs) == len(ours)
+              and (numpy.abs(theirs - ours) <= allowed).all(),
+              "MYSTRAN, its own Craig-Bampton has the eigenvalues of ours",
+              f"{len(ours)}, up to {ours[-1] ** 0.5 / 6.2832:.4g} Hz")
+
+
 def system_hertz(tools):
     """Of the reduced 'held' and the whole 'free', joined at grid 6."""
     with h5py.File(tools.path("reduced.h5")) as a, \
@@ -175,8 +211,7 @@ def system_hertz(tools):
         for A, name in (K, "K"), (M, "M"):
             A[:own, :own] = sparse(b[name])
             A[numpy.ix_(place, place)] += a[name][:]
-    return numpy.sqrt(scipy.linalg.eigh(K, M, eigvals_only=True)) / (
-        2.0 * numpy.pi)
+    return numpy.sqrt(eigenvalues(K, M)) / (2.0 * numpy.pi)
 
 
 def check_system(tap, tools):
@@ -214,6 +249,8 @@ def main():
             check_external(tap, tools, name)
             if name == "NASTRAN-95":
                 check_system(tap, tools)
+            else:
+                check_craig_bampton(tap, tools)
     tap.finish()
 
 
