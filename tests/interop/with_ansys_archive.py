@@ -5,17 +5,14 @@ import pathlib
 import sys
 import tempfile
 
-from common import Tap, Tools, skip
+import h5py
+import mapdl_archive
+import numpy
+import scipy.io
+import scipy.sparse
+from mapdl_archive import examples
 
-try:
-    import h5py
-    import mapdl_archive
-    import numpy
-    import scipy.io
-    import scipy.sparse
-    from mapdl_archive import examples
-except ImportError as missing:
-    skip(missing)
+from common import Tap, Tools
 
 FOLDER = pathlib.Path(examples.__file__).resolve().parent
 

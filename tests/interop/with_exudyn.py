@@ -4,17 +4,14 @@ in it what it would have computed itself, and keeps momentum."""
 import sys
 import tempfile
 
-from common import Block, DATA, Tap, Tools, skip
+import exudyn
+import exudyn.FEM
+import h5py
+import numpy
+import scipy.linalg
+import scipy.sparse
 
-try:
-    import exudyn
-    import exudyn.FEM
-    import h5py
-    import numpy
-    import scipy.linalg
-    import scipy.sparse
-except ImportError as missing:
-    skip(missing)
+from common import DATA, Block, Tap, Tools
 
 # both sides sum up to 9 n^2 products, n = 135: their rounding errors, about
 # sqrt(9 n^2) eps = 9e-14 of the largest entry; Exudyn also sets what is below

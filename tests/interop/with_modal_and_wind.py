@@ -4,16 +4,13 @@ to six digits, and a superelement for OpenFAST by openfast-io to the bit."""
 import sys
 import tempfile
 
-from common import Block, Tap, Tools, skip
+import h5py
+import numpy
+import pyuff
+import scipy.linalg
+from openfast_io.FAST_reader import InputReader_OpenFAST
 
-try:
-    import h5py
-    import numpy
-    import pyuff
-    import scipy.linalg
-    from openfast_io.FAST_reader import InputReader_OpenFAST
-except ImportError as missing:
-    skip(missing)
+from common import Block, Tap, Tools
 
 
 def check_modes(tap, tools, block):

@@ -6,17 +6,14 @@ import re
 import sys
 import tempfile
 
-from common import EXTERNAL, Tap, Tools, skip
+import h5py
+import numpy
+import scipy.linalg
+import scipy.sparse
+
+from common import EXTERNAL, Tap, Tools
 from solvers import (MYSTRAN, NASTRAN95, need, printed_complex_hertz,
                      printed_hertz, run_mystran, run_nastran95)
-
-try:
-    import h5py
-    import numpy
-    import scipy.linalg
-    import scipy.sparse
-except ImportError as missing:
-    skip(missing)
 
 FEER = "EIGR    1       FEER    0.0     1.-9            {modes}"
 SOLVERS = {
