@@ -399,6 +399,7 @@ static void a_comma_at_the_end_of_a_file_continues_nothing(void **state)
     assert_ok(ritz_deck_read(folder_path("top.inp"), &deck));
     assert_int_equal(deck.grids.count, 2);
     assert_int_equal(deck.grids.id[0], 7);
+    ritz_deck_free(&deck);
     folder_write("top.inp", "*NODE\n7\n*INCLUDE, INPUT=comma.inp\nSIZE=3\n");
     folder_write("comma.inp", "*NSET, NSET=A,\n");
     assert_ok(ritz_deck_read(folder_path("top.inp"), &deck));
