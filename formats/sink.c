@@ -96,6 +96,10 @@ ritz_status ritz_export_check(const ritz_exporter *exporter,
                    RITZ_ERR_ARGUMENT,
                    "%s takes a model whole, without a choice of ports",
                    exporter->name);
+    RITZ_REFUSE_IF((request->frame || request->reference) &&
+                       !(exporter->takes & RITZ_EXPORT_FRAME),
+                   RITZ_ERR_ARGUMENT, "%s has no body in a moving frame",
+                   exporter->name);
     return RITZ_OK;
 }
 

@@ -88,6 +88,10 @@ typedef struct ritz_export_request {
                                 interface; NULL: those that were attached */
     const char *modes;       /* shapes: which modes, "1-6,9"; NULL: the first
                                 ten of a component, all of anything else */
+    const char *frame;       /* of a moving body: "basic", "centre" or a grid;
+                              NULL: "basic" */
+    const char *reference;   /* of its modes: "none", "mean-axis" or "tangent";
+                              NULL: "none" */
     const ritz_stamp *stamp; /* container: its stamp; NULL: an empty one */
 } ritz_export_request;
 
@@ -118,6 +122,7 @@ enum {
     RITZ_EXPORT_MATRICES = 32,
     RITZ_EXPORT_STYLE = 64,
     RITZ_EXPORT_NUMBERED = 128,
+    RITZ_EXPORT_FRAME = 256,
     RITZ_EXPORT_PORTS = 512,
 };
 

@@ -151,6 +151,14 @@ holds '  an averaged port stiffens nothing, a rigid one does' \
         (j, json.load(open("averaged.json")), json.load(open("rigid.json")))))'
 expect 0 'rigid.red.h5' ritz-reduce rigid.h5 rigid.b.h5 -o rigid.red.h5
 expect 0 'at 64 nodes' ritz-export --to exudyn --force rigid.red.h5 -o rigid.hdf5
+expect 0 'reference tangent' ritz-export --to exudyn --force --frame 64 \
+    --reference tangent rigid.red.h5 -o rigid.hdf5
+expect 0 'frame at the centre of mass' ritz-export --to exudyn --force \
+    --frame centre --reference mean-axis rigid.red.h5 -o rigid.hdf5
+expect 1 'grid 63 does not say how it turns' ritz-export --to exudyn --force \
+    --frame 63 --reference tangent rigid.red.h5 -o rigid.hdf5
+expect 1 'there is no such grid' ritz-export --to exudyn --force --frame 99 \
+    rigid.red.h5 -o rigid.hdf5
 
 # --- on a hinge --------------------------------------------------------------------
 

@@ -351,6 +351,10 @@ expect 2 "no format 'outptu4', is 'output4' meant?" \
     ritz-export red.h5 --to outptu4 -o x
 expect 2 'exudyn has no matrices to choose' \
     ritz-export red.h5 --to exudyn --matrix K -o x
+expect 2 'tsv has no body in a moving frame' \
+    ritz-export h.h5 --to tsv --frame centre -o x
+expect 2 'tsv has no body in a moving frame' \
+    ritz-export h.h5 --to tsv --reference tangent -o x
 expect 2 'tsv has one way of writing' ritz-export h.h5 --to tsv --digits 5 -o x
 expect 1 "'K' is named twice" \
     ritz-export red.h5 --to output4 --matrix K,K --force -o x

@@ -16,6 +16,7 @@
 
 enum { MODES = 3, PATH_SIZE = 64 };
 
+static const ritz_floating_request basic = {0};
 static const double masses[2] = {2.0, 3.0};
 static const double places[6] = {1.0, -2.0, 0.5, 4.0, -2.0, 0.5};
 /* rows 0.8 -0.6 0, 0.6 0.8 0, 0 0 1: exact to rounding */
@@ -204,15 +205,15 @@ static void rigid_motion_is_left_to_the_frame(void **state)
     const double unit = 1.0 / sqrt(2.0 * 3.0 * 5.0);
 
     assert_ok(reduce_pair(false, k, &reduced));
-    assert_ok(exudyn_body_of(&reduced, &body));
-    assert_int_equal(body.modes.num_rigid, 5);
-    assert_int_equal(body.modes.V.ncol, 1);
+    assert_ok(exudyn_body_of(&reduced, &basic, &body));
+    assert_int_equal(body.floating.num_rigid, 5);
+    assert_int_equal(body.floating.V.ncol, 1);
     /* LAPACK on six dofs: some tens of roundings of the largest */
-    assert_near(body.modes.K.val[0], lambda, 1e3 * DBL_EPSILON * lambda);
-    assert_near(body.modes.M.val[0], 1.0, 1e3 * DBL_EPSILON);
-    assert_near(body.modeBasis.val[0], 3.0 * unit, 1e3 * DBL_EPSILON);
-    assert_near(body.modeBasis.val[3], -2.0 * unit, 1e3 * DBL_EPSILON);
-    assert_near(body.modes.lowest_hz, sqrt(lambda) / (2.0 * acos(-1.0)),
+    assert_near(body.floating.K.val[0], lambda, 1e3 * DBL_EPSILON * lambda);
+    assert_near(body.floating.M.val[0], 1.0, 1e3 * DBL_EPSILON);
+    assert_near(body.floating.shape.val[0], 3.0 * unit, 1e3 * DBL_EPSILON);
+    assert_near(body.floating.shape.val[3], -2.0 * unit, 1e3 * DBL_EPSILON);
+    assert_near(body.floating.lowest_hz, sqrt(lambda) / (2.0 * acos(-1.0)),
                 1e3 * DBL_EPSILON);
     /* x.psi = 2 * 1 * 3u - 3 * 4 * 2u = -18 u, on the axes across */
     assert_near(ritz_dense_col(&body.terms.mXRefTildePsiTilde, 1)[1],
@@ -246,11 +247,11 @@ static void columns_beside_rigid_ones_stay_as_they_are(void **state)
     RITZ_OWN(exudyn_body) body = {0};
 
     make_marked(0.25, &reduced);
-    assert_ok(exudyn_body_of(&reduced, &body));
-    assert_true(body.modes.kept);
-    assert_int_equal(body.modes.num_rigid, 5);
-    assert_near(body.modeBasis.val[0], 0.75, 0.0);
-    assert_near(body.modeBasis.val[4], 0.25, 0.0);
+    assert_ok(exudyn_body_of(&reduced, &basic, &body));
+    assert_true(body.floating.kept);
+    assert_int_equal(body.floating.num_rigid, 5);
+    assert_near(body.floating.shape.val[0], 0.75, 0.0);
+    assert_near(body.floating.shape.val[4], 0.25, 0.0);
 }
 
 static void a_loose_part_is_refused(void **state)
@@ -269,7 +270,7 @@ static void a_loose_part_is_refused(void **state)
     ritz_sparse_free(&pair.K);
     pair.K = K;
     assert_ok(reduce(&pair, &reduced));
-    assert_fails(exudyn_body_of(&reduced, &body), RITZ_ERR_ARGUMENT,
+    assert_fails(exudyn_body_of(&reduced, &basic, &body), RITZ_ERR_ARGUMENT,
                  "a part is loose");
 }
 
@@ -339,16 +340,16 @@ static void rotations_count_in_all_terms(void **state)
     RITZ_OWN(ritz_export_report) report = {0};
 
     make_turning(&reduced);
-    assert_ok(exudyn_body_of(&reduced, &body));
-    assert_int_equal(body.modes.V.ncol, 9);
+    assert_ok(exudyn_body_of(&reduced, &basic, &body));
+    assert_int_equal(body.floating.V.ncol, 9);
     for (int64_t k = 0; k < 9; k++) {
         assert_consistent(&body.terms, k);
-        assert_near(body.modes.M.val[k * 10], 1.0, 1e3 * DBL_EPSILON);
+        assert_near(body.floating.M.val[k * 10], 1.0, 1e3 * DBL_EPSILON);
     }
     /* 2 (y^2 + z^2) + 3 (y^2 + z^2) + 0.7 about x */
     assert_near(body.terms.inertiaLocal.val[0], 5.0 * 4.25 + 0.7,
                 1e2 * DBL_EPSILON);
-    assert_ok(exudyn_body_say(&reduced, &body, &report));
+    assert_ok(exudyn_body_say(&body, &report));
     assert_true(says(&report, "rotations of 1 grids left out"));
     /* a mass with inertia moves by its rotations too */
     assert_false(says(&report, "kinetic energy"));
