@@ -8,12 +8,13 @@
  * IFO 1 is square, 6 symmetric with one triangle given, 2 and 9 rectangular;
  * TIN 1 and 2 are real, 3 and 4 complex, A + iB or, if POLAR is 1, A at B
  * degrees. Square ones have a row for every dof that occurs as row or column,
- * ascending; rectangular ones have the rows and the columns that occur.
+ * ascending; rectangular ones have the rows and the columns that occur, or with
+ * IFO 9 and NCOL the columns 1 to NCOL, of which GJ is the number.
  *
  * INCLUDE is followed where the file's folder is known; where it is not, a
  * matrix whose columns would have to come from elsewhere is refused.
  *
- * [Nastran1986], entry DMIG.
+ * [Nastran1986], and [MSC2022] for NCOL, entry DMIG.
  */
 #include "base/alloc.h"
 #include "base/search.h"
@@ -34,6 +35,7 @@ enum {
     RITZ_DMIG_WIDE = 2,
     RITZ_DMIG_SYMMETRIC = 6,
     RITZ_DMIG_COLUMNS = 9,
+    MOST_COLUMNS = 10000000, /* that NCOL may state */
 };
 
 /* A header card. */
@@ -42,6 +44,7 @@ typedef struct ritz_dmig_header {
     char name[RITZ_NAME_SIZE];
     int64_t form;
     bool complex, polar;
+    int64_t columns; /* NCOL of form 9; 0: those that occur */
     int64_t digits;
     int64_t count; /* of its terms */
 } ritz_dmig_header;
@@ -132,6 +135,10 @@ static ritz_status add_header(ritz_dmig_cards *all, const ritz_card *card)
         return ritz_card_refuse(card, 5, "0 or 1 for POLAR");
     header.complex = type > 2;
     header.polar = polar == 1;
+    if (header.form == RITZ_DMIG_COLUMNS) /* others may have any number there */
+        RITZ_CHECK(ritz_card_whole(card, 7, 0, &header.columns));
+    if (header.columns < 0 || header.columns > MOST_COLUMNS)
+        return ritz_card_refuse(card, 7, "a number of columns");
     RITZ_CHECK_ROOM(all->header, all->num_headers, all->headers_room);
     all->header[all->num_headers++] = header;
     return RITZ_OK;
@@ -198,6 +205,11 @@ static ritz_status add_column(ritz_dmig_cards *all, const ritz_card *card)
         return ritz_cards_refuse(&all->cards, card->entry->line,
                                  "DMIG '%s' has no header", named.name);
     RITZ_CHECK(take_dof(card, 1, &col));
+    if (owner->columns > 0) {
+        if (col.grid > owner->columns)
+            return ritz_card_refuse(card, 1, "among the columns 1 to NCOL");
+        col.component = 0;
+    }
     for (int64_t k = 4; k < card->count && owner->line == all->wanted; k += 4)
         if (!is_empty_group(card, k))
             RITZ_CHECK(add_term(all, owner, card, k, col));
@@ -354,6 +366,20 @@ static ritz_status collect_dofs(const ritz_dmig_term *terms, int64_t count,
     return RITZ_OK;
 }
 
+/* The columns of a rectangular matrix, ascending. */
+static ritz_status list_columns(const ritz_dmig_header *owner,
+                                const ritz_dmig_term *terms, int64_t *count,
+                                ritz_dof **out)
+{
+    if (owner->columns == 0)
+        return collect_dofs(terms, owner->count, false, true, count, out);
+    RITZ_CHECK_NEW(*out, owner->columns);
+    *count = owner->columns;
+    for (int64_t j = 0; j < owner->columns; j++)
+        (*out)[j] = (ritz_dof){j + 1, 0};
+    return RITZ_OK;
+}
+
 /* The matrix of a header and its sorted terms. */
 static ritz_status make_matrix(const ritz_dmig_header *owner,
                                const ritz_dmig_term *terms, ritz_matrix *out)
@@ -375,8 +401,7 @@ static ritz_status make_matrix(const ritz_dmig_header *owner,
         collect_dofs(terms, owner->count, true, square, &nrow, &new.row));
     ncol = nrow;
     if (!square)
-        RITZ_CHECK(
-            collect_dofs(terms, owner->count, false, true, &ncol, &new.col));
+        RITZ_CHECK(list_columns(owner, terms, &ncol, &new.col));
     RITZ_CHECK(ritz_triplets_reserve(&list, owner->count));
     for (int64_t k = 0; k < owner->count; k++) {
         const ritz_dmig_term *one = &terms[k];

@@ -123,13 +123,43 @@ static void polar_values_are_turned(void **state)
     double half = 2.0 * sqrt(0.5);
 
     (void)state;
-    assert_ok(parse("DMIG,P,0,9,4,0,1,,2\nDMIG,P,3,,,1,1,2.,45.\n", &all));
+    assert_ok(parse("DMIG,P,0,9,4,0,1\nDMIG,P,3,,,1,1,2.,45.\n", &all));
     assert_non_null(all.matrix[0].imaginary);
     assert_int_equal(all.matrix[0].A.ncol, 1);
     assert_int_equal(all.matrix[0].col[0].grid, 3);
     /* sin and cos of a rounded angle: two units in the last place of 1.4 */
     assert_near(re(&all.matrix[0], 0, 0), half, 2 * 2.3e-16);
     assert_near(im(&all.matrix[0], 0, 0), half, 2 * 2.3e-16);
+}
+
+/* Those of IFO 9 with NCOL have a number, others are those that occur. */
+static void rectangular_ones_have_these_columns(void **state)
+{
+    static const char TEXT[] = "DMIG,P,0,9,2,0,,,4\n"
+                               "DMIG,P,3,,,7,2,1.5\nDMIG,P,1,5,,7,1,2.5\n"
+                               "DMIG,Q,0,9,2,0\n"
+                               "DMIG,Q,30,,,7,2,1.5\nDMIG,Q,10,,,7,1,2.5\n"
+                               "DMIG,R,0,2,2,0,,,99\n"
+                               "DMIG,R,7,2,,7,1,1.5\nDMIG,R,7,1,,8,,2.5\n";
+    static const ritz_dof cols[] = {{7, 1}, {7, 2}};
+    RITZ_OWN(ritz_matrices) all = {0};
+
+    (void)state;
+    assert_ok(parse(TEXT, &all));
+    assert_int_equal(all.count, 3);
+    assert_int_equal(all.matrix[0].A.ncol, 4);
+    assert_int_equal(all.matrix[0].A.nrow, 2);
+    assert_true(re(&all.matrix[0], 1, 2) == 1.5);
+    assert_true(re(&all.matrix[0], 0, 0) == 2.5);
+    assert_int_equal(all.matrix[0].A.colptr[4], 2);
+    assert_int_equal(all.matrix[1].A.ncol, 2);
+    assert_true(re(&all.matrix[1], 0, 0) == 2.5);
+    assert_true(re(&all.matrix[1], 1, 1) == 1.5);
+    assert_int_equal(all.matrix[2].A.ncol, 2);
+    assert_true(re(&all.matrix[2], 0, 1) == 1.5);
+    assert_true(re(&all.matrix[2], 1, 0) == 2.5);
+    for (int k = 0; k < 2; k++)
+        assert_int_equal(ritz_dof_compare(&all.matrix[2].col[k], &cols[k]), 0);
 }
 
 static void what_is_no_matrix_is_refused(void **state)
@@ -143,6 +173,10 @@ static void what_is_no_matrix_is_refused(void **state)
         {"DMIG,K,0,3,2\n", "'3' in DMIG is not a form: 1, 2, 6 or 9"},
         {"DMIG,K,0,6,7\n", "'7' in DMIG is not a type"},
         {"DMIG,K,0,6,2,0,2\n", "'2' in DMIG is not 0 or 1 for POLAR"},
+        {"DMIG,K,0,9,2,0,,,-1\n", "'-1' in DMIG is not a number of columns"},
+        {"DMIG,K,0,9,2,0,,,10000001\n", "is not a number of columns"},
+        {"DMIG,K,0,9,2,0,,,3\nDMIG,K,4,,,1,1,1.\n",
+         "line 2: '4' in DMIG is not among the columns 1 to NCOL"},
         {"DMIG,1K,0,6,2\n", "'1K' in DMIG is not the name of a matrix"},
         {"DMIG,K,0,6,2\nDMIG,K,1,7,,1,1,1.\n", "line 2: '7' in DMIG is not a "
                                                "direction"},
@@ -203,7 +237,7 @@ static void a_deck_cut_or_corrupted_anywhere_ends_well(void **state)
 static void every_allocation_may_fail(void **state)
 {
     (void)state;
-    static const char POLAR[] = "DMIG,P,0,9,4,0,1,,2\n"
+    static const char POLAR[] = "DMIG,P,0,9,4,0,1,,3\n"
                                 "DMIG,P,3,,,1,1,2.,45.\n";
 
     assert_survives_every_allocation(read_bytes(LARGE, sizeof LARGE - 1));
@@ -261,6 +295,9 @@ static void a_punched_model_has_its_published_frequencies(void **state)
     assert_near(f[1], 2.130694, 5e-7);
     assert_int_equal(all.matrix[3].A.ncol, 1); /* VAX */
     assert_int_equal(all.matrix[3].col[0].component, 0);
+    assert_int_equal(all.matrix[5].A.ncol, 90); /* MUG1T, most of them null */
+    assert_true(re(&all.matrix[5], 14, 84) == 1.0);
+    assert_int_equal(all.matrix[5].A.colptr[90], 15);
 }
 
 static void forms_and_types_of_others_are_read(void **state)
@@ -319,6 +356,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(three_spellings_give_the_same_bits),
     cmocka_unit_test(square_ones_stay_as_they_are_given),
     cmocka_unit_test(polar_values_are_turned),
+    cmocka_unit_test(rectangular_ones_have_these_columns),
     cmocka_unit_test(what_is_no_matrix_is_refused),
     cmocka_unit_test(only_a_dmig_card_is_recognised),
     cmocka_unit_test(a_deck_cut_or_corrupted_anywhere_ends_well),
