@@ -332,6 +332,7 @@ static const struct kind {
     {"CORD2C", ritz_bulk_take_by_points, RITZ_CYLINDRICAL},
     {"CORD2R", ritz_bulk_take_by_points, RITZ_RECTANGULAR},
     {"CORD2S", ritz_bulk_take_by_points, RITZ_SPHERICAL},
+    {"EXTRN", ritz_bulk_take_external, 0},
     {"GRDSET", ritz_bulk_take_defaults, 0},
     {"GRID", ritz_bulk_take_grid, 0},
     {"MPC", take_constraint, true},
@@ -603,6 +604,7 @@ static void ritz_bulk_cards_free(ritz_bulk_cards *all)
     ritz_cards_free(&all->cards);
     RITZ_FREE(all->grid, all->frame, all->sum, all->constraint);
     ritz_bulk_ranges_free(&all->points);
+    ritz_bulk_ranges_free(&all->external);
     for (int k = 0; k < RITZ_BULK_SETS; k++)
         ritz_bulk_ranges_free(&all->ranges[k]);
 }
@@ -644,6 +646,7 @@ static ritz_status build_deck(ritz_bulk_cards *all, ritz_deck *out)
     for (int k = 0; k < 3; k++)
         RITZ_CHECK(list_set(all, &all->ranges[k], out, &out->num_sets[k],
                             &out->set[k]));
+    RITZ_CHECK(ritz_bulk_list_external(all, out));
     RITZ_CHECK(name_constraints(all, out));
     RITZ_CHECK(ritz_bulk_list_equations(all, out));
     return list_elements(all, out);

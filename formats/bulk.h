@@ -75,7 +75,8 @@ typedef struct ritz_bulk_cards {
     ritz_bulk_sum *sum;
     int64_t num_constraints, constraints_room;
     ritz_bulk_constraint *constraint;
-    ritz_bulk_ranges points; /* SPOINT */
+    ritz_bulk_ranges points;   /* SPOINT */
+    ritz_bulk_ranges external; /* EXTRN, in its order */
     ritz_bulk_ranges ranges[RITZ_BULK_SETS];
 } ritz_bulk_cards;
 
@@ -89,12 +90,19 @@ ritz_status ritz_bulk_take_by_grids(ritz_bulk_cards *all, const ritz_card *card,
 ritz_status ritz_bulk_take_by_points(ritz_bulk_cards *all,
                                      const ritz_card *card, int32_t how);
 
+ritz_status ritz_bulk_take_external(ritz_bulk_cards *all, const ritz_card *card,
+                                    int32_t how);
+
 const ritz_bulk_grid *ritz_bulk_find_grid(const ritz_bulk_cards *all,
                                           int64_t id);
 
 /** Settle and place all grids and frames, once all cards are there; each id
  * counts once. @cost O(n log n) */
 ritz_status ritz_bulk_place_grids(ritz_bulk_cards *all, ritz_grids *out);
+
+/** The rows that EXTRN names. @param[in,out] out  its grids and points are
+ * there */
+ritz_status ritz_bulk_list_external(const ritz_bulk_cards *all, ritz_deck *out);
 
 /**
  * The equations of all constraint elements that act.

@@ -400,6 +400,7 @@ void ritz_deck_free(ritz_deck *deck)
     free(deck->constraint);
     ritz_equations_free(&deck->equations);
     ritz_elements_free(&deck->elements);
-    RITZ_FREE(deck->imposed, deck->unnumbered);
+    RITZ_FREE(deck->external, deck->external_twice, deck->imposed,
+              deck->unnumbered);
     *deck = (ritz_deck){0};
 }

@@ -227,6 +227,11 @@ typedef struct ritz_deck {
     ritz_dof *fixed; /* supports u = 0, each once, sorted */
     int64_t num_sets[RITZ_NUM_SETS];
     ritz_dof *set[RITZ_NUM_SETS]; /* sorted */
+    int64_t num_external;
+    ritz_dof *external; /* rows of the matrices of an external superelement, in
+                           their order (EXTRN) */
+    char *external_twice; /* sentence about one that is named twice, as if there
+                             were two superelements; NULL: none is */
     int64_t num_constraints;
     char (*constraint)[RITZ_NAME_SIZE]; /* "RBE2 600": what makes dofs depend on
                                            others */
@@ -391,6 +396,26 @@ typedef struct ritz_import_report {
  */
 ritz_status ritz_import(const ritz_import_request *request, ritz_component *out,
                         ritz_import_report *report);
+
+/* Files of an external superelement of NASTRAN, as texts of a request. */
+typedef struct ritz_superelement {
+    char *stiffness, *mass, *damping, *structural_damping; /* "FILE:NAME"; NULL:
+                                                              it has none */
+    char *bulk; /* deck that names the rows; NULL: there is none */
+    int64_t num_others;
+    char (*other)[RITZ_NAME_SIZE]; /* "MUG1 36 x 32": matrices that are none of
+                                      a component */
+} ritz_superelement;
+
+/**
+ * Find the matrices in FILE.op4 (KAA, MAA, BAA, K4XX, or as NX names them), and
+ * the deck FILE.pch or FILE.asm beside it. DMIG in a punch file is its own
+ * deck.
+ *
+ * @return RITZ_ERR_FORMAT if there is no stiffness or no mass; RITZ_ERR_FILE
+ */
+ritz_status ritz_superelement_find(const char *path, ritz_superelement *out);
+void ritz_superelement_free(ritz_superelement *found);
 
 /* A state space out of files, as the options have it; NULL: not given. */
 typedef struct ritz_import_space_request {

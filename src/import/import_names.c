@@ -87,9 +87,10 @@ void ritz_extended_free(ritz_extended *extended)
 /*
  * Names that a deck or a file of names has for the rows of a matrix.
  *
- * A deck explains these sizes: all its dofs, in its own order; the same without
- * those that its supports fix, without those that its constraints make depend
- * on others, or without both; its a-set, the union of its sets.
+ * A deck explains these sizes: the rows of an external superelement, which it
+ * lists; all its dofs, in its own order; the same without those that its
+ * supports fix, without those that its constraints make depend on others, or
+ * without both; its a-set, the union of its sets.
  */
 
 /* All dofs of the deck, in its own order. */
@@ -157,6 +158,15 @@ static ritz_status list_sets(const ritz_deck *deck, ritz_row_names *out)
     return RITZ_OK;
 }
 
+/* The rows of an external superelement, which has no dependent dofs. */
+static ritz_status list_external(const ritz_deck *deck, ritz_row_names *out)
+{
+    RITZ_CHECK_COPY(out->dof, deck->external, deck->num_external);
+    out->count = deck->num_external;
+    snprintf(out->map, sizeof out->map, "EXTRN");
+    return RITZ_OK;
+}
+
 static bool same_names(const ritz_row_names *a, const ritz_row_names *b)
 {
     return a->count == b->count &&
@@ -164,7 +174,7 @@ static bool same_names(const ritz_row_names *a, const ritz_row_names *b)
             memcmp(a->dof, b->dof, (size_t)a->count * sizeof *a->dof) == 0);
 }
 
-enum { ALL, SETS, FREE, LESS, LEAST, KINDS };
+enum { ALL, EXTERNAL, SETS, FREE, LESS, LEAST, KINDS };
 
 /* The lists of names that a deck explains. */
 typedef struct deck_lists {
@@ -178,7 +188,10 @@ static void deck_lists_free(deck_lists *lists)
 }
 
 /* Names of the lists in messages. */
-static const char *const WORDS[KINDS] = {"", "a-set", "grids less SPCs",
+static const char *const WORDS[KINDS] = {"",
+                                         "EXTRN",
+                                         "a-set",
+                                         "grids less SPCs",
                                          "grids less dependents",
                                          "grids less SPCs and dependents"};
 
@@ -193,7 +206,7 @@ static void explain_sizes(const ritz_deck *deck, const ritz_row_names *list,
         used += snprintf(text + used, size - (size_t)used,
                          ", %" PRId64 " points", deck->num_points);
     used += snprintf(text + used, size - (size_t)used, ")");
-    for (int k = SETS; k < KINDS; k++) {
+    for (int k = EXTERNAL; k < KINDS; k++) {
         bool news = list[k].count > 0;
 
         for (int j = 0; j < k; j++)
@@ -211,7 +224,9 @@ static ritz_status choose_list(const ritz_deck *deck, int64_t n,
     char sizes[320];
 
     *chosen = -1;
-    for (int k = 0; k < KINDS && *chosen != ALL; k++) {
+    if (list[EXTERNAL].count == n && n > 0)
+        *chosen = EXTERNAL; /* which says the order, too */
+    for (int k = 0; k < KINDS && *chosen != ALL && *chosen != EXTERNAL; k++) {
         if (list[k].count != n || n == 0)
             continue;
         RITZ_REFUSE_IF(*chosen >= 0 && !same_names(&list[*chosen], &list[k]),
@@ -242,7 +257,10 @@ static ritz_status list_deck_names(const ritz_deck *deck, int64_t n,
     RITZ_REFUSE_IF(deck->unnumbered, RITZ_ERR_FORMAT,
                    "%s: --dofs must name the rows of '%s'", deck->unnumbered,
                    spec);
+    RITZ_REFUSE_IF(deck->external_twice, RITZ_ERR_FORMAT, "%s",
+                   deck->external_twice);
     RITZ_CHECK(list_all(deck, &list[ALL]));
+    RITZ_CHECK(list_external(deck, &list[EXTERNAL]));
     RITZ_CHECK(list_sets(deck, &list[SETS]));
     for (int k = FREE; k < KINDS; k++)
         RITZ_CHECK(list_less(deck, k != LESS, k != FREE, &list[k]));

@@ -252,6 +252,11 @@ IMPORT = {
             "averaged-port mean=1-2\nrigid-port hub=2,3\n"
             f">K\n{K}>D\n1 1\n2 1\n3 1\n>B\nBEGIN BULK\nGRID,1,,0.,0.,0.\n"
             "GRID,2,,1.,0.,0.\nGRID,3,,0.,1.,1.\nSPC1,1,1,1\nENDDATA\n",
+    "external": f"stiffness K\nmass K\nbulk B\nport tip=9\n>K\n{K}"
+                ">B\nBEGIN SUPER       7\nEXTRN,9,3,1001,THRU,1002,0\n"
+                "GRID,9,,0.,2.,0.\nSPOINT,1001,THRU,1002\n",
+    "complex": "stiffness P:K\nmass P:M\n>P\nDMIG,K,0,6,4,0\n"
+               "DMIG,K,1,1,,1,1,3.,4.\nDMIG,M,0,6,2,0\nDMIG,M,1,1,,1,1,3.\n",
     "tied": f"stiffness K\ndofs D\nbulk B\n>K\n{K}>D\n1 1\n2 1\n3 1\n"
             ">B\nSOL 103\nCEND\nMPC=8\nBEGIN BULK\nGRID,1\nGRID,2,,1.\n"
             "GRID,3,,2.\nMPC,8,2,1,1.0,3,1,-1.0\nENDDATA\n",

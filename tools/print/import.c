@@ -178,20 +178,58 @@ static void take_lists(import_options *lists)
     request->damper = lists->damper.text;
 }
 
+/* Request the matrices of an external superelement, and its deck. */
+static ritz_status request_superelement(const char *path,
+                                        ritz_import_request *request,
+                                        ritz_superelement *found)
+{
+    RITZ_CHECK_IN("--superelement", ritz_superelement_find(path, found));
+    request->stiffness = found->stiffness;
+    request->mass = found->mass;
+    request->damping = found->damping;
+    request->structural_damping = found->structural_damping;
+    if (!request->bulk)
+        request->bulk = found->bulk;
+    RITZ_REFUSE_IF(!request->bulk && !request->dofs, RITZ_ERR_ARGUMENT,
+                   "--superelement: neither a .pch nor an .asm that names the "
+                   "rows of '%s' is beside it: name a deck with --bulk",
+                   path);
+    return RITZ_OK;
+}
+
+/* Matrices of a superelement that are none of a component. */
+static void say_others(cli_run *run, const ritz_superelement *found)
+{
+    char text[512] = "";
+
+    SINK_EACH(run, "not_taken", k, found->num_others) {
+        sink_add(run, "%s", found->other[k]);
+        sink_append(text, sizeof text, "%s%s", k > 0 ? ", " : "",
+                    found->other[k]);
+    }
+    if (found->num_others > 0)
+        cli_say(run, "not taken: %s", text);
+}
+
 static ritz_status import_component(cli_run *run, import_options *given)
 {
     ritz_import_request *request = &given->request;
+    RITZ_OWN(ritz_superelement) found = {0};
     RITZ_OWN(ritz_file_sums) sums = {0};
     RITZ_OWN(model) made = {.kind = MODEL_COMPONENT};
     RITZ_OWN(ritz_import_report) done = {0};
 
     take_lists(given);
+    if (given->superelement)
+        RITZ_CHECK(request_superelement(given->superelement, request, &found));
     RITZ_CHECK(take_inputs(run, request));
     request->sums = &sums;
     RITZ_CHECK(ritz_import(request, &made.component, &done));
     take_sums(run, &sums);
     RITZ_CHECK(describe_output(run, &made));
     say_import(run, &made.component, &done);
+    if (given->superelement)
+        say_others(run, &found);
     return RITZ_OK;
 }
 
@@ -268,8 +306,15 @@ ritz_status import_run(cli_run *run, import_options *given)
                             "--output-matrix");
     if (request->ratios && !request->frequencies)
         cli_refuse(program, "--ratios are those of --frequencies");
-    if (!request->stiffness && !request->mass && !request->frequencies)
+    if (given->superelement &&
+        (request->stiffness || request->mass || request->damping ||
+         request->structural_damping || request->frequencies))
+        cli_refuse(program, "--superelement has its matrices: no other option "
+                            "names any");
+    if (!request->stiffness && !request->mass && !request->frequencies &&
+        !given->superelement)
         cli_refuse(program, "nothing to import: name --stiffness, --mass or "
-                            "both, or --frequencies, or --state-space");
+                            "both, or --superelement, --frequencies or "
+                            "--state-space");
     return import_component(run, given);
 }

@@ -181,6 +181,7 @@ ritz_status responses_run(cli_run *run, const response_options *given);
 /* Lists of the command line are taken into the request. */
 typedef struct import_options {
     cli_list load, port, rigid, averaged, input, output, damper;
+    const char *superelement; /* file from which matrices are requested */
     ritz_import_request request;
     ritz_import_space_request space;
 } import_options;
