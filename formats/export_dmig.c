@@ -7,10 +7,8 @@
  *     DMIG*    NAME  GJ  CJ                        TIN 2 real, double
  *     *        G1    C1  A1                        one line for each term
  *
- * A coordinate belongs to a grid if its column is that of a constraint, whose
- * row of T is a unit vector: then q_j is that displacement itself, along the
- * grid's own axes. Of a symmetric matrix the lower triangle is written, as
- * both would be fatal to NASTRAN [MSC2012].
+ * Of a symmetric matrix the lower triangle is written, as both would be fatal
+ * to NASTRAN [MSC2012].
  *
  * NASTRAN-95 wants each continuation marked, both triangles, and a D in each
  * number of double precision [Nastran1986]: a number without is fatal there,
@@ -26,6 +24,7 @@
 #include "formats/cards.h"
 #include "formats/certificate.h"
 #include "formats/large_field.h"
+#include "formats/nastran_rows.h"
 #include "formats/sink.h"
 
 #include <inttypes.h>
@@ -35,9 +34,8 @@
 #include <string.h>
 
 enum {
-    LARGEST_ID = 99999999, /* of grids and scalar points */
-    COMMENT = 68,          /* columns of text behind "$ " */
-    SYMMETRIC = 6,         /* IFO */
+    COMMENT = 68,  /* columns of text behind "$ " */
+    SYMMETRIC = 6, /* IFO */
     SQUARE = 1,
     MARKER_SIZE = 8 + 1,
 };
@@ -72,11 +70,7 @@ typedef struct dmig_deck {
     const ritz_export_report *report;
     int64_t count; /* of matrices */
     dmig_matrix matrix[sizeof kinds / sizeof *kinds];
-    int64_t order;       /* r */
-    ritz_dof *dof;       /* r, of each coordinate */
-    int64_t *at;         /* r, coordinates with their dofs ascending */
-    int64_t num_grids;   /* dofs of the interface, the first of `at` */
-    int64_t first_point; /* number of the first scalar point */
+    ritz_nastran_rows rows;
     char *certificate;
 } dmig_deck;
 
@@ -86,7 +80,8 @@ static void dmig_deck_free(dmig_deck *deck)
         ritz_dense_free(&deck->matrix[k].exact);
         ritz_dense_free(&deck->matrix[k].rounded);
     }
-    RITZ_FREE(deck->dof, deck->at, deck->certificate);
+    ritz_nastran_rows_free(&deck->rows);
+    free(deck->certificate);
 }
 
 /* ---- rounding ------------------------------------------------------------ */
@@ -132,132 +127,6 @@ static ritz_status round_matrix(dmig_matrix *m)
                     ritz_dense_col(&m->rounded, j)[i];
         }
     return RITZ_OK;
-}
-
-/* ---- grids and points ---------------------------------------------------- */
-
-/* Whether q_j is the displacement of this row of T. */
-static bool is_displacement(const ritz_dense *T, int64_t row, int64_t j)
-{
-    for (int64_t k = 0; k < T->ncol; k++)
-        if (ritz_dense_col(T, k)[row] != (k == j ? 1.0 : 0.0))
-            return false;
-    return true;
-}
-
-static ritz_status find_interface(const ritz_reduced *reduced, dmig_deck *deck)
-{
-    const ritz_columns *columns = &reduced->columns;
-
-    for (int64_t j = 0; j < deck->order; j++) {
-        const int64_t row = columns->dof[j];
-        char name[RITZ_DOF_NAME_SIZE];
-
-        if (row < 0)
-            continue;
-        RITZ_REFUSE_IF(
-            columns->kind[j] != RITZ_COLUMN_CONSTRAINT ||
-                !is_displacement(&reduced->T, row, j),
-            RITZ_ERR_ARGUMENT,
-            "%s is attached, but no coordinate is its displacement, as DMIG "
-            "wants it: reduce by craig-bampton or guyan",
-            ritz_dof_name(reduced->dof[row], name));
-        deck->dof[j] = reduced->dof[row];
-        deck->num_grids++;
-    }
-    RITZ_REFUSE_IF(deck->num_grids == 0, RITZ_ERR_ARGUMENT,
-                   "no coordinate is the displacement of a grid, by which "
-                   "DMIG is joined to a model: reduce by craig-bampton or "
-                   "guyan with a port attached");
-    return RITZ_OK;
-}
-
-/* The largest number of a grid or a point of the full component. */
-static int64_t find_largest(const ritz_reduced *reduced)
-{
-    int64_t largest = 0;
-
-    for (int64_t k = 0; k < reduced->num_dofs; k++)
-        if (reduced->dof[k].grid > largest)
-            largest = reduced->dof[k].grid;
-    for (int64_t k = 0; k < reduced->recovery.count; k++)
-        if (reduced->recovery.dof[k].grid > largest)
-            largest = reduced->recovery.dof[k].grid;
-    for (int64_t k = 0; k < reduced->grids.count; k++)
-        if (reduced->grids.id[k] > largest)
-            largest = reduced->grids.id[k];
-    return largest;
-}
-
-/* Scalar points begin behind the next power of ten or, if there is no room,
-   behind the last grid. */
-static ritz_status number_points(dmig_deck *deck)
-{
-    const int64_t count = deck->order - deck->num_grids;
-    const int64_t largest = find_largest(deck->reduced);
-    int64_t base = 1000;
-    int64_t next = 0;
-
-    while (base <= largest && base <= LARGEST_ID)
-        base *= 10;
-    if (base + count > LARGEST_ID)
-        base = largest;
-    RITZ_REFUSE_IF(base + count > LARGEST_ID, RITZ_ERR_ARGUMENT,
-                   "grid %" PRId64 " leaves no numbers up to %d for %" PRId64
-                   " scalar points",
-                   largest, LARGEST_ID, count);
-    deck->first_point = base + 1;
-    for (int64_t j = 0; j < deck->order; j++)
-        if (deck->dof[j].grid == 0)
-            deck->dof[j].grid = deck->first_point + next++;
-    return RITZ_OK;
-}
-
-typedef struct dmig_place {
-    ritz_dof dof;
-    int64_t j;
-} dmig_place;
-
-static int compare_places(const void *left, const void *right)
-{
-    return ritz_dof_compare(&((const dmig_place *)left)->dof,
-                            &((const dmig_place *)right)->dof);
-}
-
-static ritz_status sort_coordinates(dmig_deck *deck)
-{
-    RITZ_OWN_ARRAY dmig_place *place = NULL;
-
-    RITZ_CHECK_NEW(place, deck->order);
-    for (int64_t j = 0; j < deck->order; j++)
-        place[j] = (dmig_place){deck->dof[j], j};
-    qsort(place, (size_t)deck->order, sizeof *place, compare_places);
-    for (int64_t k = 0; k < deck->order; k++)
-        deck->at[k] = place[k].j;
-    return RITZ_OK;
-}
-
-static ritz_status name_coordinates(dmig_deck *deck)
-{
-    const ritz_reduced *reduced = deck->reduced;
-
-    RITZ_REFUSE_IF(!reduced->T.val || !reduced->dof, RITZ_ERR_ARGUMENT,
-                   "it was made --without-basis: whose displacements its "
-                   "coordinates are is not known");
-    deck->order = reduced->K.nrow;
-    RITZ_CHECK_NEW(deck->dof, deck->order);
-    RITZ_CHECK_NEW(deck->at, deck->order);
-    RITZ_CHECK(find_interface(reduced, deck));
-    RITZ_CHECK(number_points(deck));
-    return sort_coordinates(deck);
-}
-
-static bool in_interface(const dmig_deck *deck, int64_t grid)
-{
-    for (int64_t k = 0; k < deck->num_grids; k++)
-        if (deck->dof[deck->at[k]].grid == grid)
-            return true;
-    return false;
 }
 
 /* ---- matrices ------------------------------------------------------------ */
@@ -409,24 +278,6 @@ static ritz_status audit_rounding(const dmig_deck *deck, dmig_audit *out)
 
 /* ---- report -------------------------------------------------------------- */
 
-static ritz_status say_coordinates(const dmig_deck *deck,
-                                   ritz_export_report *report)
-{
-    const int64_t points = deck->order - deck->num_grids;
-
-    RITZ_CHECK(ritz_export_say(report,
-                               "%" PRId64 " dofs of interface grids, along the "
-                               "axes of each grid (its CD)",
-                               deck->num_grids));
-    if (points > 0)
-        RITZ_CHECK(ritz_export_say(
-            report,
-            "%" PRId64 " other coordinates are SPOINT %" PRId64 " to %" PRId64
-            ", in the order of columns",
-            points, deck->first_point, deck->first_point + points - 1));
-    return RITZ_OK;
-}
-
 static ritz_status say_matrix(const dmig_matrix *m, ritz_export_report *report)
 {
     const char *with = m->lower ? m->kind->symmetric : m->kind->square;
@@ -491,20 +342,9 @@ static ritz_status say_audit(const dmig_audit *audit,
 
 static ritz_status say_losses(const dmig_deck *deck, ritz_export_report *report)
 {
-    const ritz_reduced *reduced = deck->reduced;
-
-    for (int64_t p = 0; p < reduced->num_ports; p++) {
-        const ritz_port_map *port = &reduced->port[p];
-        bool all = true;
-
-        for (int64_t k = 0; k < port->count; k++)
-            all = all && in_interface(deck, port->dof[k].grid);
-        if (!all)
-            RITZ_CHECK(ritz_export_say(report,
-                                       "port '%s' is left out: it was not "
-                                       "attached",
-                                       port->name));
-    }
+    RITZ_CHECK(ritz_nastran_rows_say_ports(&deck->rows, deck->reduced,
+                                           "is left out: it was not attached",
+                                           report));
     return ritz_export_say(report, "left out, as DMIG has no place for them: "
                                    "shapes of other grids, inputs and "
                                    "outputs, inertia");
@@ -524,8 +364,8 @@ static void put_places(FILE *file, const dmig_deck *deck)
     int64_t last = 0;
     char text[4 * RITZ_NAME_SIZE];
 
-    for (int64_t k = 0; k < deck->num_grids; k++) {
-        const int64_t id = deck->dof[deck->at[k]].grid;
+    for (int64_t k = 0; k < deck->rows.num_interface; k++) {
+        const int64_t id = deck->rows.dof[deck->rows.at[k]].grid;
         const int64_t g = ritz_grids_find(grids, id);
 
         if (id == last || g < 0)
@@ -578,8 +418,8 @@ static void put_line(FILE *file, dmig_marks *marks, const char *name,
 static int64_t next_term(const dmig_deck *deck, const dmig_matrix *m, int64_t j,
                          int64_t k)
 {
-    while (k < deck->order && deck->at[k] != j &&
-           ritz_dense_col(&m->exact, j)[deck->at[k]] == 0.0)
+    while (k < deck->rows.order && deck->rows.at[k] != j &&
+           ritz_dense_col(&m->exact, j)[deck->rows.at[k]] == 0.0)
         k++;
     return k;
 }
@@ -587,22 +427,22 @@ static int64_t next_term(const dmig_deck *deck, const dmig_matrix *m, int64_t j,
 static void put_column(FILE *file, const dmig_deck *deck, const dmig_matrix *m,
                        int64_t col, dmig_marks *marks)
 {
-    const int64_t j = deck->at[col];
-    const ritz_dof of = deck->dof[j];
+    const int64_t j = deck->rows.at[col];
+    const ritz_dof of = deck->rows.dof[j];
     int64_t k = next_term(deck, m, j, m->lower ? col : 0);
     char fields[4 * RITZ_LARGE_FIELD_SIZE], number[RITZ_LARGE_FIELD_SIZE];
 
     snprintf(fields, sizeof fields, "%-16s%16" PRId64 "%16" PRId64,
              m->kind->card, of.grid, of.component);
     put_line(file, marks, "DMIG*", fields, true);
-    while (k < deck->order) {
-        const int64_t i = deck->at[k];
+    while (k < deck->rows.order) {
+        const int64_t i = deck->rows.at[k];
 
         k = next_term(deck, m, j, k + 1);
         print_number(m, ritz_dense_col(&m->exact, j)[i], number);
         snprintf(fields, sizeof fields, "%16" PRId64 "%16" PRId64 "%16s",
-                 deck->dof[i].grid, deck->dof[i].component, number);
-        put_line(file, marks, NULL, fields, k < deck->order);
+                 deck->rows.dof[i].grid, deck->rows.dof[i].component, number);
+        put_line(file, marks, NULL, fields, k < deck->rows.order);
     }
 }
 
@@ -624,7 +464,7 @@ static void put_commands(FILE *file, const dmig_deck *deck)
 static ritz_status put_deck(FILE *file, const void *what)
 {
     const dmig_deck *deck = what;
-    const int64_t points = deck->order - deck->num_grids;
+    const int64_t points = deck->rows.order - deck->rows.num_interface;
     dmig_marks marks = {.numbered = deck->request->numbered};
 
     put_comment(file, deck->certificate);
@@ -633,16 +473,17 @@ static ritz_status put_deck(FILE *file, const void *what)
     put_commands(file, deck);
     put_places(file, deck);
     if (points == 1)
-        fprintf(file, "SPOINT  %8" PRId64 "\n", deck->first_point);
+        fprintf(file, "SPOINT  %8" PRId64 "\n", deck->rows.first_point);
     else if (points > 1)
         fprintf(file, "SPOINT  %8" PRId64 "%8s%8" PRId64 "\n",
-                deck->first_point, "THRU", deck->first_point + points - 1);
+                deck->rows.first_point, "THRU",
+                deck->rows.first_point + points - 1);
     for (int64_t k = 0; k < deck->count; k++) {
         const dmig_matrix *m = &deck->matrix[k];
 
         fprintf(file, "DMIG    %-8s%8d%8d%8d%8d\n", m->kind->card, 0,
                 m->lower ? SYMMETRIC : SQUARE, 2, 0);
-        for (int64_t col = 0; col < deck->order; col++)
+        for (int64_t col = 0; col < deck->rows.order; col++)
             put_column(file, deck, m, col, &marks);
     }
     return RITZ_OK;
@@ -657,10 +498,10 @@ static ritz_status write_deck(const ritz_export_object *object,
     dmig_audit audit = {0};
 
     RITZ_CHECK(ritz_certificate(object, request->stamp, &deck.certificate));
-    RITZ_CHECK(name_coordinates(&deck));
+    RITZ_CHECK(ritz_nastran_rows_new(deck.reduced, "DMIG", &deck.rows));
     RITZ_CHECK(take_matrices(object, report, &deck));
     RITZ_CHECK(audit_rounding(&deck, &audit));
-    RITZ_CHECK(say_coordinates(&deck, report));
+    RITZ_CHECK(ritz_nastran_rows_say(&deck.rows, report));
     for (int64_t k = 0; k < deck.count; k++)
         RITZ_CHECK(say_matrix(&deck.matrix[k], report));
     RITZ_CHECK(say_audit(&audit, report));
