@@ -284,42 +284,61 @@ static ritz_status write_all(FILE *file, const void *what)
     return RITZ_OK;
 }
 
-ritz_status ritz_output4_write(const char *path, int64_t count,
-                               const ritz_matrix *matrix,
-                               const ritz_output4_style *style)
+ritz_status ritz_output4_fill(const ritz_draft *draft, int64_t count,
+                              const ritz_matrix *matrix,
+                              const ritz_output4_style *style)
 {
     job all = {count, matrix, *style};
 
     if (all.style.digits == 0)
         all.style.digits = 17;
     RITZ_REFUSE_IF(count < 1, RITZ_ERR_ARGUMENT, "there is no matrix for '%s'",
-                   path);
+                   draft->path);
     RITZ_REFUSE_IF(
         all.style.digits < 1 || all.style.digits > 17, RITZ_ERR_ARGUMENT,
         "%" PRId64 " digits cannot be written, 1 to 17 can", all.style.digits);
-    return ritz_sink_write(path, write_all, &all);
+    return ritz_sink_fill(draft, write_all, &all);
+}
+
+ritz_status ritz_output4_write(const char *path, int64_t count,
+                               const ritz_matrix *matrix,
+                               const ritz_output4_style *style)
+{
+    RITZ_OWN(ritz_draft) draft = {0};
+
+    RITZ_CHECK_IN(path, ritz_draft_new(path, &draft));
+    RITZ_CHECK(ritz_output4_fill(&draft, count, matrix, style));
+    return ritz_draft_publish(&draft);
 }
 
 /* ---- exporter ----------------------------------------------------------- */
+
+ritz_status ritz_output4_style_of(const ritz_export_request *request,
+                                  ritz_export_report *report,
+                                  ritz_output4_style *out)
+{
+    *out = (ritz_output4_style){
+        .text = request->text,
+        .sparse = !request->dense,
+        .digits = request->digits > 0 ? request->digits : 17,
+    };
+    if (!out->text || out->digits == 17)
+        return RITZ_OK;
+    return ritz_export_say(report,
+                           "%lld digits: values are rounded, and a free "
+                           "body is then not quite free",
+                           (long long)out->digits);
+}
 
 static ritz_status write_matrices(const ritz_export_object *object,
                                   const ritz_export_request *request,
                                   ritz_export_report *report)
 {
-    const ritz_output4_style style = {
-        .text = request->text,
-        .sparse = !request->dense,
-        .digits = request->digits > 0 ? request->digits : 17,
-    };
+    ritz_output4_style style = {0};
     RITZ_OWN(ritz_matrices) list = {0};
 
     RITZ_CHECK(ritz_export_damped(object, request, NULL, report, &list));
-    if (style.text && style.digits < 17)
-        RITZ_CHECK(
-            ritz_export_say(report,
-                            "%lld digits: values are rounded, and a free "
-                            "body is then not quite free",
-                            (long long)style.digits));
+    RITZ_CHECK(ritz_output4_style_of(request, report, &style));
     return ritz_output4_write(request->output, list.count, list.matrix, &style);
 }
 

@@ -92,6 +92,9 @@ ritz_status ritz_export_check(const ritz_exporter *exporter,
     RITZ_REFUSE_IF(
         request->numbered && !(exporter->takes & RITZ_EXPORT_NUMBERED),
         RITZ_ERR_ARGUMENT, "%s has no continuations to number", exporter->name);
+    RITZ_REFUSE_IF(request->id != 0 && !(exporter->takes & RITZ_EXPORT_ID),
+                   RITZ_ERR_ARGUMENT, "%s has no number to be given",
+                   exporter->name);
     RITZ_REFUSE_IF(request->ports && !(exporter->takes & RITZ_EXPORT_PORTS),
                    RITZ_ERR_ARGUMENT,
                    "%s takes a model whole, without a choice of ports",

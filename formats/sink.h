@@ -25,6 +25,17 @@ ritz_status ritz_sink_fill_h5(const ritz_draft *draft,
 ritz_status ritz_sink_write(const char *path, ritz_sink_writer *write,
                             const void *what);
 
+/** Fill a draft with OUTPUT4, as ritz_output4_write() does. */
+ritz_status ritz_output4_fill(const ritz_draft *draft, int64_t count,
+                              const ritz_matrix *matrix,
+                              const ritz_output4_style *style);
+
+/** The digits of text that are to be written, and a line of the report if these
+ * round values. */
+ritz_status ritz_output4_style_of(const ritz_export_request *request,
+                                  ritz_export_report *report,
+                                  ritz_output4_style *out);
+
 /** Refuse a matrix that holds a value that is not finite, naming it. */
 ritz_status ritz_sink_check(const ritz_matrix *m);
 

@@ -7,12 +7,13 @@ static void list_formats(void)
         printf("%-16s %-9s %-52s [%s]\n", (*e)->name, (*e)->kind, (*e)->summary,
                (*e)->reference);
     printf(
-        "\nreduced: a reduced component and, but for dmig and exudyn, a "
-        "system at a\nconfiguration (--at; for basilisk, chrono, openfast and "
-        "simscape --component names its\nbodies), either of which --states "
-        "makes a state space, or a state space.\nshapes: modes of a "
-        "component, of a reduced component, or of a system, whose bodies\n"
-        "--component names; but for uff, columns of a basis.\n");
+        "\nreduced: a reduced component and, but for dmig, exudyn and "
+        "superelement, a\nsystem at a configuration (--at; for basilisk, "
+        "chrono, openfast and simscape\n--component names its bodies), either "
+        "of which --states makes a state space, or a\nstate space.\n"
+        "shapes: modes of a component, of a reduced component, or of a "
+        "system, whose bodies\n--component names; but for uff, columns of a "
+        "basis.\n");
 }
 
 /* Choose the exporter, and refuse options that it does not take. */
@@ -46,14 +47,17 @@ int main(int argc, char **argv)
         CLI_TEXT("matrix", &request->matrices, "NAME[,NAME]",
                  "write these matrices only [all]"),
         CLI_FLAG("text", &request->text,
-                 "write text instead of binary (output4)"),
+                 "write text instead of binary (output4, superelement)"),
         CLI_FLAG("dense", &request->dense,
-                 "write every entry, zeros too (output4)"),
+                 "write every entry, zeros too (output4, superelement)"),
         CLI_INT("digits", &request->digits, "N", 1, 17,
                 "significant digits of text [17]"),
         CLI_FLAG("numbered", &request->numbered,
                  "as NASTRAN-95 wants it: marked continuations, both "
                  "triangles, exponents with a D (dmig)"),
+        CLI_INT("id", &request->id, "N", 1, 99999999,
+                "number of a superelement, and unit of its file "
+                "(superelement) [101]"),
         CLI_TEXT("port", &request->ports, "NAME[,NAME]",
                  "ports whose grids are the interface (basilisk, chrono, "
                  "openfast, openfast-4, simscape) [those attached]"),

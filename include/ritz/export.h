@@ -81,11 +81,13 @@ void ritz_shapes_free(ritz_shapes *shapes);
 typedef struct ritz_export_request {
     const char *output;      /* path */
     const char *matrices;    /* "K,M"; NULL: all that the format takes */
-    bool text, dense;        /* output4 */
-    int64_t digits;          /* text */
+    bool text, dense;        /* output4, superelement */
     bool numbered;           /* dmig: continuations have marks */
+    int64_t digits;          /* text */
     const char *ports;       /* names with commas between, whose grids are the
                                 interface; NULL: those that were attached */
+    int64_t id;              /* superelement: its number and the unit of its
+                                file; 0: 101 */
     const char *modes;       /* shapes: which modes, "1-6,9"; NULL: the first
                                 ten of a component, all of anything else */
     const char *frame;       /* of a moving body: "basic", "centre" or a grid;
@@ -124,6 +126,7 @@ enum {
     RITZ_EXPORT_NUMBERED = 128,
     RITZ_EXPORT_FRAME = 256,
     RITZ_EXPORT_PORTS = 512,
+    RITZ_EXPORT_ID = 2048,
 };
 
 typedef struct ritz_exporter {
@@ -150,6 +153,7 @@ extern const ritz_exporter ritz_exporter_openfast;
 extern const ritz_exporter ritz_exporter_openfast_4;
 extern const ritz_exporter ritz_exporter_output4;
 extern const ritz_exporter ritz_exporter_simscape;
+extern const ritz_exporter ritz_exporter_superelement;
 extern const ritz_exporter ritz_exporter_tsv;
 extern const ritz_exporter ritz_exporter_uff;
 extern const ritz_exporter ritz_exporter_vtu;

@@ -94,9 +94,9 @@ static const char DECK[] = "BEGIN SUPER      102\n"
 static ritz_status read_bytes(const char *bytes, int64_t size)
 {
     RITZ_OWN(ritz_deck) deck = {0};
-    RITZ_OWN_ARRAY char *text = malloc((size_t)size + 1);
+    char text[4096];
 
-    assert_non_null(text);
+    assert_true(size < (int64_t)sizeof text);
     memcpy(text, bytes, (size_t)size);
     text[size] = '\0';
     return ritz_deck_parse("t.pch", text, size, NULL, &deck);

@@ -1,0 +1,31 @@
+/* Cards of eight columns a field, for all that writes bulk data. */
+#ifndef RITZ_FORMATS_SMALL_FIELD_H
+#define RITZ_FORMATS_SMALL_FIELD_H
+
+#include <stdint.h>
+#include <stdio.h>
+
+/* A card on its way to a file; a field that does not fit the line begins the
+   next one, which continues it. */
+typedef struct ritz_small_card {
+    FILE *file;
+    int fields; /* on the present line */
+} ritz_small_card;
+
+/** Begin a card, of which the name fills the first field. */
+ritz_small_card ritz_small_begin(FILE *file, const char *name);
+
+/** Put a field of at most eight letters, or a number of at most eight figures.
+ */
+void ritz_small_text(ritz_small_card *card, const char *text);
+void ritz_small_id(ritz_small_card *card, int64_t id);
+
+/** Leave the rest of the line blank. */
+void ritz_small_skip(ritz_small_card *card);
+
+/** "FIRST THRU LAST", or the number of a single one. */
+void ritz_small_range(ritz_small_card *card, int64_t first, int64_t count);
+
+void ritz_small_end(const ritz_small_card *card);
+
+#endif
