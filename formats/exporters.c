@@ -14,6 +14,8 @@ const ritz_exporter *const ritz_exporters[] = {
     &ritz_exporter_output4,
     &ritz_exporter_simscape,
     &ritz_exporter_superelement,
+    &ritz_exporter_sid,
+    &ritz_exporter_simscape,
     &ritz_exporter_tsv,
     &ritz_exporter_uff,
     &ritz_exporter_vtu,

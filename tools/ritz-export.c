@@ -1,19 +1,30 @@
 /* ritz-export - a reduced model or a response as a file of others. */
 #include "print/print.h"
 
+/* What an exporter takes beside reduced components, in three letters. */
+static const char *marks_of(const ritz_exporter *e, char text[4])
+{
+    const bool states = (e->takes & RITZ_EXPORT_STATES) != 0;
+    const bool shapes = (e->takes & RITZ_EXPORT_SHAPES) != 0;
+    const bool ports = (e->takes & RITZ_EXPORT_PORTS) != 0;
+
+    snprintf(text, 4, "%s%s%s", states || shapes || ports ? "a" : "",
+             shapes || ports ? "c" : "", states ? "s" : "");
+    return text;
+}
+
 static void list_formats(void)
 {
+    char marks[4];
+
     for (const ritz_exporter *const *e = ritz_exporters; *e; e++)
-        printf("%-16s %-9s %-52s [%s]\n", (*e)->name, (*e)->kind, (*e)->summary,
-               (*e)->reference);
-    printf(
-        "\nreduced: a reduced component and, but for dmig, exudyn and "
-        "superelement, a\nsystem at a configuration (--at; for basilisk, "
-        "chrono, openfast and simscape\n--component names its bodies), either "
-        "of which --states makes a state space, or a\nstate space.\n"
-        "shapes: modes of a component, of a reduced component, or of a "
-        "system, whose bodies\n--component names; but for uff, columns of a "
-        "basis.\n");
+        printf("%-16s %-9s %-3s %-52s [%s]\n", (*e)->name, (*e)->kind,
+               marks_of(*e, marks), (*e)->summary, (*e)->reference);
+    printf("\nreduced: a reduced component; shapes: modes of a component or of "
+           "a reduced component and,\nbut for uff, columns of a basis.\n"
+           "a  also a system at a configuration (--at)\n"
+           "c  whose bodies --component names\n"
+           "s  also a state space, as --states makes of the others\n");
 }
 
 /* Choose the exporter, and refuse options that it does not take. */
@@ -62,9 +73,9 @@ int main(int argc, char **argv)
                  "ports whose grids are the interface (basilisk, chrono, "
                  "openfast, openfast-4, simscape) [those attached]"),
         CLI_TEXT("frame", &request->frame, "basic|centre|GRID",
-                 "where the moving frame of a body is (exudyn) [basic]"),
+                 "where the moving frame of a body is [basic]"),
         CLI_TEXT("reference", &request->reference, "none|mean-axis|tangent",
-                 "what its modes are measured from (exudyn) [none]"),
+                 "what its modes are measured from [none; sid: by frame]"),
         MODEL_OPTIONS(&given.model),
         CLI_FLAG("states", &given.states,
                  "write the states x' = A x + B u, y = C x + D u, with damping "

@@ -152,6 +152,7 @@ extern const ritz_exporter ritz_exporter_matrix_market;
 extern const ritz_exporter ritz_exporter_openfast;
 extern const ritz_exporter ritz_exporter_openfast_4;
 extern const ritz_exporter ritz_exporter_output4;
+extern const ritz_exporter ritz_exporter_sid;
 extern const ritz_exporter ritz_exporter_simscape;
 extern const ritz_exporter ritz_exporter_superelement;
 extern const ritz_exporter ritz_exporter_tsv;

@@ -29,7 +29,7 @@ for tool in basis reduce export check verify rank frf poles simulate; do
     expect 0 'configuration of a system' "ritz-$tool" --help
 done
 expect 0 'a system at a configuration (--at)' ritz-basis --list
-expect 0 'configuration (--at; for basilisk' ritz-export --list
+expect 0 'also a system at a configuration (--at)' ritz-export --list
 expect 1 'name one with --at' ritz-export --to matlab system.h5 -o none.mat
 expect 1 'name one with --at' ritz-basis balanced --modes 4 system.h5 -o x.h5
 expect 1 'no configuration is at' ritz-check --at clock=33 system.h5

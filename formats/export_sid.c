@@ -1,0 +1,383 @@
+/*
+ * Standard Input Data of a flexible body [Wallrapp1994], as SIMPACK, EMBSlib
+ * and FEMBeam read it [Waurich2022]. The body moves with a frame; a node
+ * R from its origin lies at R + phi q and has turned by psi q.
+ *
+ * Readers disagree in three places, and the file is such that all of them find
+ * the same body:
+ *
+ *     m1( i, k, j)   row, mode, column: as in files of SIMPACK and EMBSlib,
+ *                    unlike FEMBeam's
+ *     Ge             three columns for each mode, as all readers take it; some
+ *                    files of EMBSlib have m columns for each axis
+ *     Me             EMBSlib takes I whatever the file says: modes are scaled
+ *                    so
+ *
+ * Diagonal and unit matrices have all their entries, since some readers do not
+ * look at the structure. Numbers have one digit before the point and a D, the
+ * only exponent that EMBSlib knows.
+ */
+#include "base/alloc.h"
+#include "formats/certificate.h"
+#include "formats/sid.h"
+#include "formats/sink.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- the body ----------------------------------------------------------- */
+
+void sid_body_free(sid_body *body)
+{
+    ritz_normal_body_free(&body->normal);
+    ritz_sid_terms_free(&body->terms);
+    *body = (sid_body){0};
+}
+
+ritz_status sid_body_of(const ritz_reduced *reduced,
+                        const ritz_export_request *request, sid_body *out)
+{
+    static const double here[3] = {0.0, 0.0, 0.0};
+    RITZ_OWN(sid_body) b = {0};
+    RITZ_OWN(ritz_dense) unit = {0};
+
+    RITZ_CHECK(ritz_normal_body_of(reduced, request, &b.normal));
+    RITZ_CHECK(ritz_dense_identity(b.normal.num_modes, &unit));
+    RITZ_CHECK(ritz_sid_terms_of(&b.normal.invariants, &unit, here, &b.terms));
+    RITZ_MOVE(*out, b);
+    return RITZ_OK;
+}
+
+/* ---- its file ----------------------------------------------------------- */
+
+enum {
+    /* bytes of the first line: EMBSlib takes it in two parts of 511, and looks
+       for key words in what is left */
+    TITLE_SIZE = 1000,
+    EMBSLIB_NODE = 99999 /* the largest number that it has room for */
+};
+
+/* Codes of the structure of m0. */
+enum { STRUCTURE_ZERO = 0, STRUCTURE_DIAGONAL = 1, STRUCTURE_ANY = 3 };
+
+/* A matrix m0 + sum_k q_k m1_k. */
+typedef struct sid_matrix {
+    const char *name;
+    int64_t order, nrow, ncol, num_modes;
+    const double *m0; /* column j at m0 + j step; NULL: zero */
+    const double *m1; /* column j of mode k at m1 + (k ncol + j) step; NULL */
+    int64_t step;
+    const double *diagonal; /* of m0, instead of it; NULL: it has others */
+} sid_matrix;
+
+typedef struct sid_text {
+    FILE *file;
+    const sid_body *body;
+    const char *title; /* behind the counts of the first line */
+    double *AP;        /* 3 x 3m, of the node that is written */
+} sid_text;
+
+static void put_number(FILE *file, double x)
+{
+    char text[40];
+    char *mark = NULL;
+
+    snprintf(text, sizeof text, "% .16E", x);
+    mark = strchr(text, 'E');
+    if (mark)
+        *mark = 'D';
+    fprintf(file, "=%s\n", text);
+}
+
+static void put_m0(FILE *file, int64_t i, int64_t j, double x)
+{
+    char key[64];
+
+    if (x == 0.0)
+        return;
+    snprintf(key, sizeof key, "m0( %" PRId64 ", %" PRId64 ")", i + 1, j + 1);
+    fprintf(file, "%26s%-22s", "", key);
+    put_number(file, x);
+}
+
+static void put_m1(FILE *file, int64_t i, int64_t k, int64_t j, double x)
+{
+    char key[96];
+
+    if (x == 0.0)
+        return;
+    snprintf(key, sizeof key, "m1( %" PRId64 ", %" PRId64 ", %" PRId64 ")",
+             i + 1, k + 1, j + 1);
+    fprintf(file, "%26s%-22s", "", key);
+    put_number(file, x);
+}
+
+static void put_entries(FILE *file, const sid_matrix *A)
+{
+    for (int64_t i = 0; A->diagonal && i < A->nrow; i++)
+        put_m0(file, i, i, A->diagonal[i]);
+    for (int64_t j = 0; A->m0 && j < A->ncol; j++)
+        for (int64_t i = 0; i < A->nrow; i++)
+            put_m0(file, i, j, A->m0[j * A->step + i]);
+    for (int64_t k = 0; A->m1 && k < A->num_modes; k++)
+        for (int64_t j = 0; j < A->ncol; j++)
+            for (int64_t i = 0; i < A->nrow; i++)
+                put_m1(file, i, k, j, A->m1[(k * A->ncol + j) * A->step + i]);
+}
+
+static void put_matrix(FILE *file, int indent, const sid_matrix *A)
+{
+    const struct {
+        const char *key;
+        int64_t count;
+    } head[] = {
+        {"order", A->order},
+        {"nrow", A->nrow},
+        {"ncol", A->ncol},
+        {"nq", A->num_modes},
+        {"nqn", 0},
+        {"structure", A->diagonal ? STRUCTURE_DIAGONAL
+                      : A->m0     ? STRUCTURE_ANY
+                                  : STRUCTURE_ZERO},
+    };
+
+    fprintf(file, "%*s%s\n", indent, "", A->name);
+    for (size_t k = 0; k < sizeof head / sizeof *head; k++)
+        fprintf(file, "%26s%-22s=%5" PRId64 "\n", "", head[k].key,
+                head[k].count);
+    put_entries(file, A);
+    fprintf(file, "%*send %s\n", indent, "", A->name);
+}
+
+/* AP = I + (psi q)~ */
+static void turn_node(const sid_body *b, int64_t node, double *AP)
+{
+    for (int64_t k = 0; k < b->normal.num_modes; k++) {
+        const double *v = ritz_dense_col(&b->normal.turn, k) + 3 * node;
+
+        for (int64_t a = 0; a < 3; a++) {
+            int64_t c = (a + 1) % 3;
+            int64_t d = (a + 2) % 3;
+
+            /* v x e_a, along the other two axes */
+            AP[9 * k + 3 * a + a] = 0.0;
+            AP[9 * k + 3 * a + c] = v[d];
+            AP[9 * k + 3 * a + d] = -v[c];
+        }
+    }
+}
+
+static void put_node(const sid_text *t, int64_t node)
+{
+    static const double unit[3] = {1.0, 1.0, 1.0};
+    const sid_body *b = t->body;
+    const int64_t m = b->normal.num_modes, step = b->normal.shape.nrow;
+    const double *phi = b->normal.shape.val + 3 * node;
+    const double *place = b->normal.floating.position + 3 * node;
+    const bool turns = b->normal.floating.rotates[node] && b->normal.turn.val;
+    const double *psi = turns ? b->normal.turn.val + 3 * node : NULL;
+    const sid_matrix of_node[] = {
+        {"origin", 1, 3, 1, m, place, phi, step, NULL},
+        {"phi", 0, 3, m, m, phi, NULL, step, NULL},
+        {"psi", 0, 3, m, m, psi, NULL, step, NULL},
+        {"AP", 1, 3, 3, m, NULL, turns ? t->AP : NULL, 3, unit},
+    };
+
+    if (turns)
+        turn_node(b, node, t->AP);
+    fprintf(t->file, "%16s%-32s=%8" PRId64 "\n", "", "new node",
+            b->normal.floating.id[node]);
+    fprintf(t->file, "%21s%-27s=    body ref\n", "", "rframe");
+    for (size_t k = 0; k < sizeof of_node / sizeof *of_node; k++)
+        put_matrix(t->file, 21, &of_node[k]);
+    fprintf(t->file, "%16send node\n", "");
+}
+
+static void put_modes(FILE *file, const sid_body *b)
+{
+    fprintf(file, "%11srefmod\n%16s%-32s", "", "", "mass");
+    put_number(file, b->terms.mass);
+    fprintf(file, "%16s%-32s=%6" PRId64 "\n", "", "nelastq",
+            b->normal.num_modes);
+    for (int64_t k = 0; k < b->normal.num_modes; k++) {
+        char key[32];
+
+        snprintf(key, sizeof key, "ielastq (%4" PRId64 ")", k + 1);
+        fprintf(file, "%16s%-32s= Eigen Mode %4" PRId64 " : %15.9g Hz\n", "",
+                key, k + 1, b->normal.hertz[k]);
+    }
+    fprintf(file, "%11send refmod\n", "");
+}
+
+static sid_matrix from_taylor(const char *name, const ritz_taylor *t,
+                              bool first, int64_t m)
+{
+    return (sid_matrix){.name = name,
+                        .order = first,
+                        .nrow = t->m0.nrow,
+                        .ncol = t->m0.ncol,
+                        .num_modes = m,
+                        .m0 = t->m0.val,
+                        .m1 = first ? t->m1.val : NULL,
+                        .step = t->m0.nrow};
+}
+
+/* Orders are those of the samples: Gr and Ge without their change with q. */
+static ritz_status put_terms(FILE *file, const sid_body *b)
+{
+    const ritz_sid_terms *t = &b->terms;
+    const int64_t m = b->normal.num_modes;
+    RITZ_OWN_ARRAY double *unit = NULL;
+    const sid_matrix *of = NULL;
+
+    RITZ_CHECK_NEW(unit, m);
+    for (int64_t k = 0; k < m; k++)
+        unit[k] = 1.0;
+    of = (const sid_matrix[]){
+        from_taylor("mdCM", &t->mdCM, true, m),
+        from_taylor("J", &t->J, true, m),
+        from_taylor("Ct", &t->Ct, false, m),
+        from_taylor("Cr", &t->Cr, true, m),
+        {"Me", 0, m, m, m, NULL, NULL, m, unit},
+        from_taylor("Gr", &t->Gr, false, m),
+        from_taylor("Ge", &t->Ge, false, m),
+        from_taylor("Oe", &t->Oe, true, m),
+        {"ksigma", 0, m, 1, m, NULL, NULL, m, NULL},
+        {"Ke", 0, m, m, m, NULL, NULL, m, b->normal.K},
+        {"De", 0, m, m, m, b->normal.D.val, NULL, m, NULL},
+        {0},
+    };
+    for (; of->name; of++)
+        put_matrix(file, 11, of);
+    return RITZ_OK;
+}
+
+static ritz_status print_file(FILE *file, const void *what)
+{
+    sid_text t = *(const sid_text *)what;
+    const sid_body *b = t.body;
+    RITZ_OWN_ARRAY double *AP = NULL;
+
+    RITZ_CHECK_NEW(AP, 9 * b->normal.num_modes);
+    t.file = file;
+    t.AP = AP;
+    fprintf(file, "%5" PRId64 " %3" PRId64 "    :No. nodes, No. modes:%s\n",
+            b->normal.floating.count, b->normal.num_modes, t.title);
+    fputs(" part\n      new modal                                 =\n", file);
+    put_modes(file, b);
+    fprintf(file, "%11sframe\n", "");
+    for (int64_t node = 0; node < b->normal.floating.count; node++)
+        put_node(&t, node);
+    fprintf(file, "%11send frame\n", "");
+    RITZ_CHECK(put_terms(file, b));
+    fputs("      end modal\n end part\n", file);
+    return RITZ_OK;
+}
+
+/* ---- its title ---------------------------------------------------------- */
+
+/* Lines of the certificate, apart by bars, as long as whole ones have room. */
+typedef struct title {
+    char text[TITLE_SIZE];
+    int64_t lines, kept;
+} title;
+
+static void add_line(title *t, const char *line, size_t length)
+{
+    const size_t used = strlen(t->text);
+
+    t->lines++;
+    /* 64 bytes before it are for the counts */
+    if (used + length + 64 + 3 > sizeof t->text)
+        return;
+    t->kept++;
+    snprintf(t->text + used, sizeof t->text - used, "%s%.*s",
+             used > 0 ? " | " : "", (int)length, line);
+}
+
+/* Estimates and the command are left out first. */
+static bool comes_last(const char *line)
+{
+    static const char *const last[] = {"error, estimated: ", "command: "};
+
+    for (size_t k = 0; k < sizeof last / sizeof *last; k++)
+        if (strncmp(line, last[k], strlen(last[k])) == 0)
+            return true;
+    return false;
+}
+
+static ritz_status make_title(const ritz_export_object *object,
+                              const ritz_export_request *request,
+                              const sid_body *b, title *t)
+{
+    char frame[128];
+    char *lines = NULL;
+
+    snprintf(frame, sizeof frame,
+             "reference %s, no geometric stiffening, Ge by modes",
+             ritz_frame_condition_name(b->normal.floating.reference));
+    add_line(t, frame, strlen(frame));
+    RITZ_CHECK(ritz_certificate(object, request->stamp, &lines));
+    for (int late = 0; late < 2; late++)
+        for (const char *at = lines; *at;) {
+            const size_t length = strcspn(at, "\n");
+
+            if (comes_last(at) == late)
+                add_line(t, at, length);
+            at += length + (at[length] == '\n');
+        }
+    free(lines);
+    return RITZ_OK;
+}
+
+/* ---- exporter ----------------------------------------------------------- */
+
+static ritz_status say_losses(const sid_body *b, const title *t,
+                              ritz_export_report *report)
+{
+    const ritz_floating *f = &b->normal.floating;
+
+    RITZ_CHECK(ritz_export_say(report, "17 digits, which keep every bit"));
+    RITZ_CHECK(ritz_export_say(
+        report, "geometric stiffening, inputs and outputs are left out; Gr and "
+                "Ge do not change with deformation"));
+    if (t->kept < t->lines)
+        RITZ_CHECK(ritz_export_say(
+            report,
+            "the first line has room for %lld of %lld lines of the "
+            "certificate",
+            (long long)t->kept, (long long)t->lines));
+    /* ids ascend */
+    if (f->id[f->count - 1] > EMBSLIB_NODE)
+        RITZ_CHECK(ritz_export_say(
+            report,
+            "warning: EMBSlib has room for node numbers of five "
+            "digits, and grid %lld has more",
+            (long long)f->id[f->count - 1]));
+    return RITZ_OK;
+}
+
+static ritz_status write_sid(const ritz_export_object *object,
+                             const ritz_export_request *request,
+                             ritz_export_report *report)
+{
+    RITZ_OWN(sid_body) b = {0};
+    title t = {0};
+    sid_text text = {.body = &b, .title = t.text};
+
+    RITZ_CHECK(sid_body_of(object->reduced, request, &b));
+    RITZ_CHECK(make_title(object, request, &b, &t));
+    RITZ_CHECK(ritz_sink_write(request->output, print_file, &text));
+    RITZ_CHECK(ritz_normal_body_say(object->reduced, &b.normal, report));
+    return say_losses(&b, &t, report);
+}
+
+const ritz_exporter ritz_exporter_sid = {
+    .name = "sid",
+    .summary = "a flexible body as Standard Input Data (SIMPACK, EMBSlib)",
+    .reference = "Wallrapp1994",
+    .kind = "reduced",
+    .takes = RITZ_EXPORT_REDUCED | RITZ_EXPORT_FRAME,
+    .write = write_sid,
+};
