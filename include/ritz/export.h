@@ -142,6 +142,7 @@ typedef struct ritz_exporter {
 
 /** All exporters, ended by NULL. */
 extern const ritz_exporter *const ritz_exporters[];
+extern const ritz_exporter ritz_exporter_42;
 extern const ritz_exporter ritz_exporter_basilisk;
 extern const ritz_exporter ritz_exporter_chrono;
 extern const ritz_exporter ritz_exporter_container;

@@ -1,0 +1,397 @@
+/*
+ * A flexible body of 42, the spacecraft simulator of NASA [Stoneking2025], as
+ * its InitFlexModes() reads it. With modes psi of translation and theta of
+ * rotation, from the reference point of the body along its axes,
+ *
+ *     Pf = int psi        L_ij = int psi_i r_j
+ *     Hf = int r x psi    N_ij = int psi_i' psi_j
+ *
+ * from which 42 makes all coupling of first and second order [Stoneking2010].
+ * The reference point is the centre of mass, where 42 sets Pf and Hf to zero
+ * (REFPT_CM), or the origin of the body's axes (REFPT_JOINT).
+ *
+ * 42 reads what follows the numbers of a line by "%[^\n]" into 80 bytes: each
+ * line needs such a text, and none may be longer. It ends before "[EOF]"; what
+ * follows is for people. Nodes are in a file of their own.
+ */
+#include "base/alloc.h"
+#include "base/draft.h"
+#include "formats/certificate.h"
+#include "formats/normal_body.h"
+#include "formats/sink.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { NAME_ROOM = 39 }; /* letters of a file's name that 42 holds */
+
+typedef struct body_42 {
+    const ritz_reduced *reduced;
+    ritz_normal_body normal;
+    bool at_centre; /* REFPT_CM */
+    int64_t *node;  /* of each port, from 0; -1: it is no joint */
+    char *certificate;
+} body_42;
+
+static void body_42_free(body_42 *b)
+{
+    ritz_normal_body_free(&b->normal);
+    free(b->node);
+    free(b->certificate);
+}
+
+/* ---- the body ----------------------------------------------------------- */
+
+/* 42 leaves Pf and Hf out at the centre of mass, where they must be zero. */
+static ritz_status find_body(const ritz_reduced *reduced,
+                             const ritz_export_request *request, body_42 *b)
+{
+    ritz_export_request wanted = *request; /* borrowed */
+
+    if (!wanted.frame)
+        wanted.frame = "centre";
+    b->reduced = reduced;
+    b->at_centre = strcmp(wanted.frame, "centre") == 0;
+    RITZ_CHECK(ritz_normal_body_of(reduced, &wanted, &b->normal));
+    RITZ_REFUSE_IF(
+        b->at_centre &&
+            b->normal.floating.reference != RITZ_REFERENCE_MEAN_AXIS,
+        RITZ_ERR_ARGUMENT,
+        "at the centre of mass 42 takes modes of mean axes of a free "
+        "body: name another frame, as --frame basic");
+    return RITZ_OK;
+}
+
+/* A joint moves with one node: ports of one grid. */
+static ritz_status find_joints(body_42 *b)
+{
+    const ritz_reduced *reduced = b->reduced;
+    const ritz_floating *f = &b->normal.floating;
+
+    RITZ_CHECK_NEW(b->node, reduced->num_ports);
+    for (int64_t k = 0; k < reduced->num_ports; k++) {
+        const ritz_port_map *port = &reduced->port[k];
+
+        b->node[k] = -1;
+        for (int64_t i = 0; port->count > 0 && i < f->count; i++)
+            if (f->id[i] == port->dof[0].grid)
+                b->node[k] = i;
+        for (int64_t i = 0; i < port->count; i++)
+            if (port->dof[i].grid != port->dof[0].grid)
+                b->node[k] = -1;
+    }
+    return RITZ_OK;
+}
+
+/* ---- its file ----------------------------------------------------------- */
+
+static void put_title(FILE *file, const char *title)
+{
+    fprintf(file, "*********  %s  *********\n", title);
+}
+
+static void put_count(FILE *file, int64_t count)
+{
+    fprintf(file, "%" PRId64 "   ! Number of non-zero elements\n", count);
+}
+
+/* Elements of all nodes or of all ports. `node` NULL: node k is point k. */
+static void put_shape(FILE *file, const char *title, const char *point,
+                      const ritz_dense *shape, int64_t count,
+                      const int64_t *node)
+{
+    int64_t elements = 0;
+
+    for (int writing = 0; writing < 2; writing++) {
+        if (writing) {
+            put_title(file, title);
+            put_count(file, elements);
+        }
+        for (int64_t k = 0; shape->val && k < shape->ncol; k++)
+            for (int64_t i = 0; i < count; i++)
+                for (int64_t a = 0; a < 3; a++) {
+                    int64_t at = node ? node[i] : i;
+                    double x =
+                        at < 0 ? 0.0 : ritz_dense_col(shape, k)[3 * at + a];
+
+                    elements += x != 0.0 && !writing;
+                    if (x != 0.0 && writing)
+                        fprintf(file,
+                                "%" PRId64 " %" PRId64 " %" PRId64
+                                " %.17g   ! [Mode] [%s] [Axis] Value\n",
+                                k, i, a, x, point);
+                }
+    }
+}
+
+static void put_diagonal(FILE *file, const char *title, int64_t count,
+                         const double *value)
+{
+    put_title(file, title);
+    put_count(file, count);
+    for (int64_t k = 0; k < count; k++)
+        fprintf(file, "%" PRId64 " %" PRId64 " %.17g   ! [Row] [Col] Value\n",
+                k, k, value ? value[k] : 1.0);
+}
+
+static void put_damping(FILE *file, const ritz_dense *D)
+{
+    int64_t elements = 0;
+
+    for (int64_t i = 0; D->val && i < D->nrow * D->ncol; i++)
+        elements += D->val[i] != 0.0;
+    put_title(file, "Non-zero Damping Matrix Elements");
+    put_count(file, elements);
+    for (int64_t j = 0; D->val && j < D->ncol; j++)
+        for (int64_t i = 0; i < D->nrow; i++)
+            if (ritz_dense_col(D, j)[i] != 0.0)
+                fprintf(file,
+                        "%" PRId64 " %" PRId64 " %.17g   ! [Row] [Col] Value\n",
+                        i, j, ritz_dense_col(D, j)[i]);
+}
+
+/* Rows first, first + 1, first + 2 of the momenta: Pf or Hf. */
+static void put_momenta(FILE *file, const char *title,
+                        const ritz_dense *momentum, int64_t first)
+{
+    put_title(file, title);
+    for (int64_t k = 0; k < momentum->ncol; k++) {
+        const double *p = ritz_dense_col(momentum, k) + first;
+
+        fprintf(file, "%.17g %.17g %.17g   ! Mode %" PRId64 ", [x y z]\n", p[0],
+                p[1], p[2], k);
+    }
+}
+
+/* L[i][j][k] = X_j' m T_i(:,k) */
+static void put_linear(FILE *file, const ritz_invariants *of, int64_t m)
+{
+    int64_t elements = 0;
+
+    for (int64_t i = 0; i < of->position.nrow * of->position.ncol; i++)
+        elements += of->position.val[i] != 0.0;
+    put_title(file, "Linear Modal Integral, L, 3 x 3 x Nf");
+    put_count(file, elements);
+    for (int64_t i = 0; i < 3; i++)
+        for (int64_t k = 0; k < m; k++)
+            for (int64_t j = 0; j < 3; j++) {
+                double x = ritz_dense_col(&of->position, i * m + k)[j];
+
+                if (x != 0.0)
+                    fprintf(file,
+                            "%" PRId64 " %" PRId64 " %" PRId64
+                            " %.17g   ! [Row] [Col] [Mode] Value\n",
+                            i, j, k, x);
+            }
+}
+
+/* N[i][j][k][l] = T_i(:,k)' m T_j(:,l) */
+static void put_angular(FILE *file, const ritz_invariants *of, int64_t m)
+{
+    int64_t elements = 0;
+
+    for (int64_t i = 0; i < of->product.nrow * of->product.ncol; i++)
+        elements += of->product.val[i] != 0.0;
+    put_title(file, "Angular Modal Integral, N, 3 x 3 x Nf x Nf");
+    put_count(file, elements);
+    for (int64_t col = 0; col < 3 * m; col++)
+        for (int64_t row = 0; row < 3 * m; row++) {
+            double x = ritz_dense_col(&of->product, col)[row];
+
+            if (x != 0.0)
+                fprintf(file,
+                        "%" PRId64 " %" PRId64 " %" PRId64 " %" PRId64
+                        " %.17g   ! [Row] [Col] [Mode] [Mode] Value\n",
+                        row / m, col / m, row % m, col % m, x);
+        }
+}
+
+static void put_shapes(FILE *file, const body_42 *b)
+{
+    const ritz_normal_body *n = &b->normal;
+    const struct {
+        const char *title, *point;
+        int64_t count;
+        const int64_t *node;
+    } of[] = {
+        {"Joint Node Mode Shapes", "Joint", b->reduced->num_ports, b->node},
+        {"Analysis Node Mode Shapes", "Node", n->floating.count, NULL},
+    };
+
+    for (int k = 0; k < 2; k++) {
+        put_title(file, of[k].title);
+        put_shape(file, "Non-zero Translation Mode Shape (PSI) Elements",
+                  of[k].point, &n->shape, of[k].count, of[k].node);
+        put_shape(file, "Non-zero Rotation Mode Shape (THETA) Elements",
+                  of[k].point, &n->turn, of[k].count, of[k].node);
+    }
+}
+
+/*
+ * Lines that the spacecraft file wants of the body, in its order. At the centre
+ * of mass the body's axes begin at the basic origin; elsewhere they begin at
+ * the reference point, about which the moments of inertia are.
+ */
+static void put_mass(FILE *file, const body_42 *b)
+{
+    const ritz_floating *f = &b->normal.floating;
+    const double *R = b->normal.invariants.rigid;
+    double c[3];
+
+    for (int a = 0; a < 3; a++)
+        c[a] = b->at_centre ? f->origin[a] : f->inertia.centre[a];
+    fprintf(file,
+            "\nIn the spacecraft file:\n"
+            "%s ! Mass Props referenced to REFPT_CM or REFPT_JOINT\n"
+            "%.17g ! Mass\n%.17g %.17g %.17g ! Moments of Inertia\n"
+            "%.17g %.17g %.17g ! Products of Inertia (xy,xz,yz)\n"
+            "%.17g %.17g %.17g ! Location of mass center\n",
+            b->at_centre ? "REFPT_CM" : "REFPT_JOINT", f->inertia.mass,
+            R[3 + 6 * 3], R[4 + 6 * 4], R[5 + 6 * 5], -R[3 + 6 * 4],
+            -R[3 + 6 * 5], -R[4 + 6 * 5], c[0], c[1], c[2]);
+}
+
+static void put_rest(FILE *file, const body_42 *b)
+{
+    put_mass(file, b);
+    fputs("\nJoints:\n", file);
+    for (int64_t k = 0; k < b->reduced->num_ports; k++) {
+        const ritz_port_map *port = &b->reduced->port[k];
+
+        if (b->node[k] >= 0)
+            fprintf(file, "%" PRId64 " is port %s, grid %" PRId64 "\n", k,
+                    port->name, port->dof[0].grid);
+        else
+            fprintf(file, "%" PRId64 " is none: port %s is not of one grid\n",
+                    k, port->name);
+    }
+    fputc('\n', file);
+    fputs(b->certificate, file);
+}
+
+static ritz_status print_flex(FILE *file, const void *what)
+{
+    const body_42 *b = what;
+    const ritz_normal_body *n = &b->normal;
+    int64_t m = n->num_modes;
+
+    fputs("<<<<<<<<<<<<<<  Flexible Body Inputs for 42  >>>>>>>>>>>>>>>>>>>\n",
+          file);
+    fprintf(file,
+            "Ritz %.32s, %s   ! Description\n"
+            "%" PRId64 "   ! Number of Flex Modes\n",
+            ritz_version(), b->at_centre ? "REFPT_CM" : "REFPT_JOINT", m);
+    put_title(file, "Initial Modal States x, u");
+    for (int64_t k = 0; k < m; k++)
+        fprintf(file, "0.0 0.0   ! Mode %" PRId64 " x, u\n", k);
+    put_shapes(file, b);
+    put_diagonal(file, "Non-zero Mass Matrix Elements", m, NULL);
+    put_diagonal(file, "Non-zero Stiffness Matrix Elements", m, n->K);
+    put_damping(file, &n->D);
+    put_momenta(file, "Linear Momentum Modal Integral, Pf, 3 x Nf",
+                &n->invariants.momentum, 0);
+    put_momenta(file, "Angular Momentum Modal Integral, Hf, 3 x Nf",
+                &n->invariants.momentum, 3);
+    put_linear(file, &n->invariants, m);
+    put_angular(file, &n->invariants, m);
+    fputs("[EOF]\n", file);
+    put_rest(file, b);
+    return RITZ_OK;
+}
+
+static ritz_status print_nodes(FILE *file, const void *what)
+{
+    const body_42 *b = what;
+    const ritz_floating *f = &b->normal.floating;
+
+    fputs("<<<<<<<<<<<<<<<<  Body Node Inputs for 42  >>>>>>>>>>>>>>>>>>>>>\n",
+          file);
+    fprintf(file,
+            "Ritz %.32s   ! Description\n%" PRId64 "   ! Number of Nodes\n",
+            ritz_version(), f->count);
+    fputs("******************* Node Location, Comment *********************\n",
+          file);
+    for (int64_t k = 0; k < f->count; k++) {
+        double x[3];
+
+        for (int a = 0; a < 3; a++)
+            x[a] = f->position[3 * k + a] + (b->at_centre ? f->origin[a] : 0.0);
+        fprintf(file, "%.17g %.17g %.17g   \"grid %" PRId64 "\"\n", x[0], x[1],
+                x[2], f->id[k]);
+    }
+    return RITZ_OK;
+}
+
+/* ---- exporter ----------------------------------------------------------- */
+
+/* Both drafts are complete before either gets its name. */
+static ritz_status write_files(const body_42 *b, const char *flex,
+                               const char *nodes)
+{
+    RITZ_OWN(ritz_draft) first = {0}, second = {0};
+
+    RITZ_CHECK(ritz_draft_new(flex, &first));
+    RITZ_CHECK(ritz_draft_new(nodes, &second));
+    RITZ_CHECK(ritz_sink_fill(&first, print_flex, b));
+    RITZ_CHECK(ritz_sink_fill(&second, print_nodes, b));
+    RITZ_CHECK(ritz_draft_publish(&first));
+    return ritz_draft_publish(&second);
+}
+
+static ritz_status say_losses(const body_42 *b, const char *nodes,
+                              ritz_export_report *report)
+{
+    const char *name = strrchr(nodes, '/');
+    int64_t joints = 0;
+
+    for (int64_t k = 0; k < b->reduced->num_ports; k++)
+        joints += b->node[k] >= 0;
+    RITZ_CHECK(
+        ritz_export_say(report, "17 digits; nodes are in %.200s", nodes));
+    RITZ_CHECK(ritz_export_say(
+        report,
+        "%s; %lld of %lld ports are joints, numbered from 0 in their order",
+        b->at_centre ? "REFPT_CM" : "REFPT_JOINT", (long long)joints,
+        (long long)b->reduced->num_ports));
+    RITZ_CHECK(ritz_export_say(
+        report, "mass, inertia and the certificate follow '[EOF]', where 42 "
+                "reads no more; inputs and outputs are left out"));
+    name = name ? name + 1 : nodes;
+    if (strlen(name) > NAME_ROOM || strchr(name, ' '))
+        RITZ_CHECK(ritz_export_say(
+            report,
+            "warning: 42 takes names of files of at most %d letters, "
+            "without blanks",
+            (int)NAME_ROOM));
+    return RITZ_OK;
+}
+
+static ritz_status write_42(const ritz_export_object *object,
+                            const ritz_export_request *request,
+                            ritz_export_report *report)
+{
+    static const char suffix[] = ".nodes";
+    const size_t length = strlen(request->output);
+    RITZ_OWN_ARRAY char *nodes = NULL;
+    RITZ_OWN(body_42) b = {0};
+
+    RITZ_CHECK(find_body(object->reduced, request, &b));
+    RITZ_CHECK(find_joints(&b));
+    RITZ_CHECK(ritz_certificate(object, request->stamp, &b.certificate));
+    RITZ_CHECK_NEW(nodes, (int64_t)(length + sizeof suffix));
+    memcpy(nodes, request->output, length);
+    memcpy(nodes + length, suffix, sizeof suffix);
+    RITZ_CHECK(write_files(&b, request->output, nodes));
+    RITZ_CHECK(ritz_normal_body_say(b.reduced, &b.normal, report));
+    return say_losses(&b, nodes, report);
+}
+
+const ritz_exporter ritz_exporter_42 = {
+    .name = "42",
+    .summary = "a flexible body for 42, NASA's spacecraft simulator",
+    .reference = "Stoneking2025",
+    .kind = "reduced",
+    .takes = RITZ_EXPORT_REDUCED | RITZ_EXPORT_FRAME,
+    .write = write_42,
+};
