@@ -2,11 +2,13 @@
 #include <ritz/export.h>
 
 const ritz_exporter *const ritz_exporters[] = {
+    &ritz_exporter_42,
     &ritz_exporter_basilisk,
     &ritz_exporter_chrono,
     &ritz_exporter_container,
     &ritz_exporter_dmig,
     &ritz_exporter_exudyn,
+    &ritz_exporter_fxbody,
     &ritz_exporter_matlab,
     &ritz_exporter_matrix_market,
     &ritz_exporter_openfast,

@@ -72,10 +72,12 @@ int main(int argc, char **argv)
         CLI_TEXT("port", &request->ports, "NAME[,NAME]",
                  "ports whose grids are the interface (basilisk, chrono, "
                  "openfast, openfast-4, simscape) [those attached]"),
-        CLI_TEXT("frame", &request->frame, "basic|centre|GRID",
-                 "where the moving frame of a body is [basic; 42: centre]"),
+        CLI_TEXT(
+            "frame", &request->frame, "basic|centre|GRID",
+            "where the moving frame of a body is [basic; 42, fxbody: centre]"),
         CLI_TEXT("reference", &request->reference, "none|mean-axis|tangent",
-                 "what its modes are measured from [none; 42, sid: by frame]"),
+                 "what its modes are measured from [none; 42, fxbody, sid: by "
+                 "frame]"),
         MODEL_OPTIONS(&given.model),
         CLI_FLAG("states", &given.states,
                  "write the states x' = A x + B u, y = C x + D u, with damping "

@@ -148,6 +148,7 @@ extern const ritz_exporter ritz_exporter_chrono;
 extern const ritz_exporter ritz_exporter_container;
 extern const ritz_exporter ritz_exporter_dmig;
 extern const ritz_exporter ritz_exporter_exudyn;
+extern const ritz_exporter ritz_exporter_fxbody;
 extern const ritz_exporter ritz_exporter_matlab;
 extern const ritz_exporter ritz_exporter_matrix_market;
 extern const ritz_exporter ritz_exporter_openfast;
