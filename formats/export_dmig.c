@@ -242,7 +242,7 @@ static ritz_status find_rounded(const dmig_deck *deck, dmig_audit *audit,
                                 ritz_pairs *out)
 {
     const dmig_matrix *K = &deck->matrix[0], *M = &deck->matrix[1];
-    const double share = (double)deck->order * M->change;
+    const double share = (double)deck->rows.order * M->change;
     RITZ_OWN(ritz_dense) padded = {0};
     const ritz_status status = ritz_eigen_dense(&K->rounded, &M->rounded, out);
 
@@ -251,7 +251,7 @@ static ritz_status find_rounded(const dmig_deck *deck, dmig_audit *audit,
     snprintf(audit->indefinite, sizeof audit->indefinite, "%s",
              ritz_error_message());
     RITZ_CHECK(ritz_dense_copy(&M->rounded, &padded));
-    for (int64_t j = 0; j < deck->order; j++)
+    for (int64_t j = 0; j < deck->rows.order; j++)
         ritz_dense_col(&padded, j)[j] *= 1.0 + share;
     return ritz_eigen_dense(&K->rounded, &padded, out);
 }

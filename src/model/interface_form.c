@@ -211,7 +211,6 @@ static ritz_status divide_space(const ritz_dense *T_b, ritz_dense *inverse,
     for (int64_t i = 0; i < p; i++)
         a[i] = invert_or_one(a[i]);
     ritz_dense_scale_rows(a, &A);
-    RITZ_CHECK(ritz_dense_new(r, r, &W));
     RITZ_CHECK(ritz_general_svd(&A, &U, &s, &W));
     RITZ_REFUSE_IF(s[p - 1] <= RITZ_NEGLIGIBLE * s[0], RITZ_ERR_ARGUMENT,
                    "the motions of the ports depend on each other in this "
