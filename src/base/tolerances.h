@@ -733,6 +733,10 @@
    terms of translations with rotations: above what single precision leaves of
    them. Directions that two grids share are told apart by the same. */
 #define RITZ_BEAM_FITS 1e-6
+/* Eigenvalues of the products of fields, each of size 1, below this are
+   rounding of sums over grids, and of rigid motion that was taken out. An
+   invariant without them errs by at most this part of its fields' sizes. */
+#define RITZ_INVARIANT_ROUNDING 1e-13
 /* A loss of kinetic energy above this is reported: rounding of modes that 98
    columns make is 3e-9, measured. */
 #define RITZ_ENERGY_LOST 1e-6

@@ -1,0 +1,277 @@
+/*
+ * Point masses with given invariants of inertia, for formats that hold a body
+ * as masses at nodes. The fields 1, x, y, z and psi_aj (translation along axis
+ * a in mode j) have the products
+ *
+ *     G_fg = integral of f g dm        G of order p = 4 + 3m
+ *
+ * and all invariants are entries of G. Points i with masses m_i and values F_if
+ * have these invariants if
+ *
+ *     F'diag(m_i) F = G,   F_i1 = 1
+ *
+ * G is positive semidefinite for solids and lumped masses. Its eigenvalues give
+ * G = B'B with as many rows as its rank, and so does (HB)'(HB) with H
+ * orthogonal. The Householder reflection that makes the first column of HB
+ * constant makes each row a point, all of the same mass.
+ *
+ * Rotary inertia that no body has, as J_x alone, and products that are
+ * approximate can make G indefinite: G = B'B - C'C. The rows of C become points
+ * of negative mass in the same way. With C e_1 near 0 they would be far away:
+ * so e_1' sqrt(mass) is a row more of both B and C, which changes nothing in
+ * their difference.
+ *
+ * Linear and angular momenta of the modes are of all of M: (x, psi) is the
+ * symmetric part of the sums of products and the antisymmetric part that
+ * belongs to the angular momentum, as for Exudyn.
+ */
+#include "formats/point_masses.h"
+
+#include "base/alloc.h"
+#include "base/tolerances.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <string.h>
+
+void ritz_point_masses_free(ritz_point_masses *points)
+{
+    free(points->mass);
+    ritz_dense_free(&points->field);
+    *points = (ritz_point_masses){0};
+}
+
+/* ---- products of fields ------------------------------------------------- */
+
+static void put_pair(ritz_dense *G, int64_t i, int64_t j, double value)
+{
+    ritz_dense_col(G, j)[i] = value;
+    ritz_dense_col(G, i)[j] = value;
+}
+
+/* Products of 1 and x: with J_o the inertia about the origin, those of x and x
+   are tr(J_o) / 2 I - J_o. */
+static void put_rigid(const ritz_inertia *inertia, ritz_dense *G)
+{
+    const double *c = inertia->centre;
+    const double *J = inertia->tensor;
+    double m = inertia->mass;
+    double trace = J[0] + J[4] + J[8];
+
+    put_pair(G, 0, 0, m);
+    for (int a = 0; a < 3; a++) {
+        put_pair(G, 0, 1 + a, m * c[a]);
+        for (int b = 0; b <= a; b++)
+            put_pair(G, 1 + a, 1 + b,
+                     m * c[a] * c[b] + (a == b ? trace / 2.0 : 0.0) -
+                         (J[3 * a + b] + J[3 * b + a]) / 2.0);
+    }
+}
+
+/* Products of 1 and x with mode j. */
+static void put_momenta(const ritz_invariants *of, int64_t j, ritz_dense *G)
+{
+    int64_t m = of->momentum.ncol;
+    const double *linear = ritz_dense_col(&of->momentum, j);
+    const double *angular = linear + 3;
+
+    for (int a = 0; a < 3; a++) {
+        put_pair(G, 0, 4 + a * m + j, linear[a]);
+        for (int b = 0; b < 3; b++) {
+            double sum = ritz_dense_col(&of->position, b * m + j)[a] +
+                         ritz_dense_col(&of->position, a * m + j)[b];
+            /* x_a psi_b - x_b psi_a = e_abc (x x psi)_c */
+            double turn = 0.0;
+
+            if (b == (a + 1) % 3)
+                turn = angular[(a + 2) % 3];
+            else if (a == (b + 1) % 3)
+                turn = -angular[(b + 2) % 3];
+
+            put_pair(G, 1 + a, 4 + b * m + j, (sum + turn) / 2.0);
+        }
+    }
+}
+
+static ritz_status multiply_fields(const ritz_inertia *inertia,
+                                   const ritz_invariants *of, ritz_dense *G)
+{
+    int64_t m = of->momentum.ncol;
+
+    RITZ_CHECK(ritz_dense_new(4 + 3 * m, 4 + 3 * m, G));
+    put_rigid(inertia, G);
+    for (int64_t j = 0; j < m; j++)
+        put_momenta(of, j, G);
+    ritz_dense_put(&of->product, 4, 4, G);
+    return RITZ_OK;
+}
+
+/*
+ * Size of each field: of 1, of a position, of each mode by all of its kinetic
+ * energy. A mode may turn what it does not move: its own product may be 0.
+ */
+static ritz_status size_fields(const ritz_inertia *inertia, const ritz_dense *G,
+                               const ritz_dense *M, double **size)
+{
+    double square = 0.0;
+
+    RITZ_CHECK_NEW(*size, G->ncol);
+    (*size)[0] = sqrt(inertia->mass);
+    for (int a = 1; a < 4; a++)
+        square += fabs(ritz_dense_col(G, a)[a]);
+    for (int a = 1; a < 4; a++)
+        (*size)[a] = sqrt(square);
+    for (int64_t f = 4; f < G->ncol; f++) {
+        int64_t j = (f - 4) % M->ncol;
+
+        (*size)[f] =
+            sqrt(fmax(ritz_dense_col(M, j)[j], fabs(ritz_dense_col(G, f)[f])));
+    }
+    for (int64_t f = 0; f < G->ncol; f++)
+        if (!((*size)[f] > 0.0)) /* a field that is zero */
+            (*size)[f] = 1.0;
+    return RITZ_OK;
+}
+
+/* ---- points ------------------------------------------------------------- */
+
+/* Eigenvectors of G, whose fields are divided by their sizes. */
+typedef struct field_axes {
+    ritz_dense Q;
+    double *lambda, *size;
+} field_axes;
+
+static void field_axes_free(field_axes *axes)
+{
+    ritz_dense_free(&axes->Q);
+    RITZ_FREE(axes->lambda, axes->size);
+}
+
+static ritz_status find_axes(const ritz_inertia *inertia,
+                             const ritz_invariants *invariants,
+                             const ritz_dense *M, field_axes *out)
+{
+    int64_t p = 0;
+    ritz_dense *G = &out->Q;
+
+    RITZ_CHECK(multiply_fields(inertia, invariants, G));
+    RITZ_CHECK(size_fields(inertia, G, M, &out->size));
+    p = G->ncol;
+    RITZ_CHECK_NEW(out->lambda, p);
+    for (int64_t k = 0; k < p * p; k++)
+        G->val[k] /= out->size[k % p] * out->size[k / p];
+    ritz_dense_symmetrise(G);
+    RITZ_REFUSE_IF(LAPACKE_dsyev(LAPACK_COL_MAJOR, 'V', 'L', (int)p, G->val,
+                                 (int)p, out->lambda) != 0,
+                   RITZ_ERR_CONVERGENCE,
+                   "the invariants of inertia have no eigenvalues");
+    return RITZ_OK;
+}
+
+static int64_t count_beyond(const field_axes *axes, double sign)
+{
+    int64_t count = 0;
+
+    for (int64_t k = 0; k < axes->Q.ncol; k++)
+        count += sign * axes->lambda[k] > RITZ_INVARIANT_ROUNDING;
+    return count;
+}
+
+/* Rows sqrt(|lambda|) q' of one sign and, if `paired`, e_1'. */
+static ritz_status list_rows(const field_axes *axes, double sign, bool paired,
+                             ritz_dense *B)
+{
+    int64_t p = axes->Q.ncol;
+    int64_t row = 0;
+
+    RITZ_CHECK(ritz_dense_new(count_beyond(axes, sign) + paired, p, B));
+    for (int64_t k = 0; k < p; k++) {
+        double root = sqrt(fabs(axes->lambda[k]));
+
+        if (!(sign * axes->lambda[k] > RITZ_INVARIANT_ROUNDING))
+            continue;
+        for (int64_t f = 0; f < p; f++)
+            ritz_dense_col(B, f)[row] = root * ritz_dense_col(&axes->Q, k)[f];
+        row++;
+    }
+    if (paired)
+        B->val[row] = 1.0;
+    return RITZ_OK;
+}
+
+/* B := (I - 2 v v'/ v'v) B, which makes its first column constant and positive.
+   Returns that constant. */
+static ritz_status level_first(ritz_dense *B, double *out)
+{
+    int64_t n = B->nrow;
+    double sum = 0.0, square = 0.0, norm = 0.0;
+    RITZ_OWN_ARRAY double *v = NULL;
+
+    RITZ_CHECK_COPY(v, B->val, n);
+    for (int64_t i = 0; i < n; i++) {
+        sum += v[i];
+        square += v[i] * v[i];
+    }
+    *out = sqrt(square / (double)n);
+    /* v = b + s c 1 with s the sign of the sum: nothing cancels */
+    for (int64_t i = 0; i < n; i++) {
+        v[i] += sum < 0.0 ? -*out : *out;
+        norm += v[i] * v[i];
+    }
+    for (int64_t f = 0; f < B->ncol; f++) {
+        double *b = ritz_dense_col(B, f);
+        double product = 0.0;
+
+        for (int64_t i = 0; i < n; i++)
+            product += v[i] * b[i];
+        for (int64_t i = 0; i < n; i++) {
+            b[i] -= 2.0 * product / norm * v[i];
+            b[i] = sum < 0.0 ? b[i] : -b[i];
+        }
+    }
+    return RITZ_OK;
+}
+
+/* Points of the rows B, from point `first` on. */
+static ritz_status put_points(const field_axes *axes, double sign,
+                              ritz_dense *B, int64_t first,
+                              ritz_point_masses *out)
+{
+    double level = 0.0;
+    const double *size = axes->size;
+
+    if (B->nrow == 0)
+        return RITZ_OK;
+    RITZ_CHECK(level_first(B, &level));
+    for (int64_t i = 0; i < B->nrow; i++)
+        out->mass[first + i] = sign * level * level * size[0] * size[0];
+    for (int64_t f = 1; f < B->ncol; f++)
+        for (int64_t i = 0; i < B->nrow; i++)
+            ritz_dense_col(&out->field, f - 1)[first + i] =
+                ritz_dense_col(B, f)[i] / level * (size[f] / size[0]);
+    return RITZ_OK;
+}
+
+ritz_status ritz_point_masses_of(const ritz_inertia *inertia,
+                                 const ritz_invariants *invariants,
+                                 const ritz_dense *M, ritz_point_masses *out)
+{
+    RITZ_OWN(field_axes) axes = {0};
+    RITZ_OWN(ritz_dense) B = {0}, C = {0};
+    RITZ_OWN(ritz_point_masses) points = {0};
+    bool paired = false;
+
+    RITZ_CHECK(find_axes(inertia, invariants, M, &axes));
+    paired = count_beyond(&axes, -1.0) > 0;
+    points.least = axes.lambda[0] / axes.lambda[axes.Q.ncol - 1];
+    RITZ_CHECK(list_rows(&axes, 1.0, paired, &B));
+    RITZ_CHECK(list_rows(&axes, -1.0, paired, &C));
+    points.num_negative = C.nrow;
+    points.count = B.nrow + C.nrow;
+    RITZ_CHECK_NEW(points.mass, points.count);
+    RITZ_CHECK(ritz_dense_new(points.count, B.ncol - 1, &points.field));
+    RITZ_CHECK(put_points(&axes, 1.0, &B, 0, &points));
+    RITZ_CHECK(put_points(&axes, -1.0, &C, B.nrow, &points));
+    RITZ_MOVE(*out, points);
+    return RITZ_OK;
+}
