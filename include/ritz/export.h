@@ -151,6 +151,7 @@ extern const ritz_exporter ritz_exporter_exudyn;
 extern const ritz_exporter ritz_exporter_fxbody;
 extern const ritz_exporter ritz_exporter_matlab;
 extern const ritz_exporter ritz_exporter_matrix_market;
+extern const ritz_exporter ritz_exporter_mbdyn;
 extern const ritz_exporter ritz_exporter_openfast;
 extern const ritz_exporter ritz_exporter_openfast_4;
 extern const ritz_exporter ritz_exporter_output4;

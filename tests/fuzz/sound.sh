@@ -99,6 +99,7 @@ space.h5     ritz-frf --points 5 --to-hz 10 @ -o OUT
 space.h5     ritz-export --to output4 @ -o OUT
 space.h5     ritz-export --to matlab @ -o OUT
 reduced.h5   ritz-export --to exudyn @ -o OUT
+reduced.h5   ritz-export --to mbdyn @ -o OUT
 reduced.h5   ritz-export --to output4 @ -o OUT
 response.h5  ritz-export --to tsv @ -o OUT
 run.h5       ritz-info @

@@ -1,0 +1,239 @@
+/*
+ * A body for the modal joint of MBDyn: its text file .fem of 13 record groups
+ * [MBDyn2017], as release 1.5.3 and later read it. Of groups
+ *
+ *      1  counts            2  labels of nodes     5, 6, 7  their x, y, z
+ *      8  modes, six numbers a node: translations and rotations
+ *      9  modal mass       10  modal stiffness    13  modal damping
+ *     11  masses of nodes
+ *
+ * MBDyn sums the masses of group 11 with positions and modes to invariants of
+ * inertia. No masses at grids give those of a consistent mass matrix, so grids
+ * have none here, and nodes without a grid carry masses that give each
+ * invariant (formats/point_masses.c).
+ *
+ * Group 12, mass, centre and inertia, would say again what group 11 gives. If
+ * a file has both, MBDyn 1.7.3 moves the nodes to its `origin node` and leaves
+ * group 12 where it was; so there is none.
+ *
+ * A line that begins with "** RECORD GROUP " opens a group, all other lines
+ * between groups are comments, and MBDyn ends at one of 8192 bytes.
+ */
+#include "base/alloc.h"
+#include "formats/certificate.h"
+#include "formats/floating_report.h"
+#include "formats/point_masses.h"
+#include "formats/sink.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+
+enum { COMMENT_WIDTH = 100, NUMBERS_A_LINE = 6 };
+
+/* Labels of nodes without a grid: no blank, and no grid has a letter. */
+static const char point_label[] = "inertia";
+
+typedef struct fem_file {
+    ritz_floating body;
+    ritz_point_masses points;
+    char *certificate;
+} fem_file;
+
+static void fem_file_free(fem_file *fem)
+{
+    ritz_floating_free(&fem->body);
+    ritz_point_masses_free(&fem->points);
+    free(fem->certificate);
+}
+
+/* ---- its groups --------------------------------------------------------- */
+
+static void open_group(FILE *file, int number, const char *title)
+{
+    fprintf(file, "**\n** RECORD GROUP %d, %s\n", number, title);
+}
+
+/* Each line has six numbers at most. */
+static void put_number(FILE *file, int64_t k, int64_t count, double value)
+{
+    bool ends = (k + 1) % NUMBERS_A_LINE == 0 || k + 1 == count;
+
+    fprintf(file, "%.17g%c", value, ends ? '\n' : ' ');
+}
+
+static void print_head(FILE *file, const fem_file *fem)
+{
+    fputs("** MBDyn MODAL DATA FILE\n", file);
+    ritz_comment_put(file, "**   ", COMMENT_WIDTH, fem->certificate);
+    open_group(file, 1, "HEADER");
+    fprintf(file,
+            "**   REVISION.  NODES.  NORMAL, ATTACHMENT, CONSTRAINT, REJECTED "
+            "MODES.\nREV0 %" PRId64 " %" PRId64 " 0 0 0\n",
+            fem->body.count + fem->points.count, fem->body.K.ncol);
+}
+
+static void print_labels(FILE *file, const fem_file *fem)
+{
+    open_group(file, 2, "FINITE ELEMENT NODE LIST");
+    for (int64_t k = 0; k < fem->body.count; k++)
+        fprintf(file, "%" PRId64 "\n", fem->body.id[k]);
+    for (int64_t k = 0; k < fem->points.count; k++)
+        fprintf(file, "%s%" PRId64 "\n", point_label, k + 1);
+}
+
+static void print_positions(FILE *file, const fem_file *fem)
+{
+    static const char *const title[3] = {
+        "NODAL X COORDINATES", "NODAL Y COORDINATES", "NODAL Z COORDINATES"};
+
+    for (int a = 0; a < 3; a++) {
+        open_group(file, 5 + a, title[a]);
+        for (int64_t k = 0; k < fem->body.count; k++)
+            fprintf(file, "%.17g\n", fem->body.position[3 * k + a]);
+        for (int64_t k = 0; k < fem->points.count; k++)
+            fprintf(file, "%.17g\n", ritz_dense_col(&fem->points.field, a)[k]);
+    }
+}
+
+static void print_modes(FILE *file, const fem_file *fem)
+{
+    const ritz_floating *body = &fem->body;
+    int64_t m = body->K.ncol;
+
+    open_group(file, 8, "NON-ORTHOGONALIZED MODE SHAPES");
+    for (int64_t j = 0; j < m; j++) {
+        const double *u = ritz_dense_col(&body->shape, j);
+        const double *turn =
+            body->turn.val ? ritz_dense_col(&body->turn, j) : NULL;
+
+        fprintf(file, "**    NORMAL MODE SHAPE #  %" PRId64 "\n", j + 1);
+        for (int64_t k = 0; k < body->count; k++)
+            for (int a = 0; a < 6; a++)
+                put_number(file, a, 6,
+                           a < 3  ? u[3 * k + a]
+                           : turn ? turn[3 * k + a - 3]
+                                  : 0.0);
+        for (int64_t k = 0; k < fem->points.count; k++)
+            for (int a = 0; a < 6; a++)
+                put_number(
+                    file, a, 6,
+                    a < 3 ? ritz_dense_col(&fem->points.field, 3 + a * m + j)[k]
+                          : 0.0);
+    }
+}
+
+/* Row by row, as MBDyn reads it. */
+static void print_matrix(FILE *file, int group, const char *title,
+                         const ritz_dense *A)
+{
+    if (!A->val)
+        return;
+    open_group(file, group, title);
+    for (int64_t i = 0; i < A->nrow; i++)
+        for (int64_t j = 0; j < A->ncol; j++)
+            put_number(file, j, A->ncol, ritz_dense_col(A, j)[i]);
+}
+
+static void print_masses(FILE *file, const fem_file *fem)
+{
+    open_group(file, 11, "DIAGONAL OF LUMPED MASS MATRIX");
+    for (int64_t k = 0; k < fem->body.count; k++)
+        fputs("0 0 0 0 0 0\n", file);
+    for (int64_t k = 0; k < fem->points.count; k++) {
+        double m = fem->points.mass[k];
+
+        fprintf(file, "%.17g %.17g %.17g 0 0 0\n", m, m, m);
+    }
+}
+
+static ritz_status print_file(FILE *file, const void *what)
+{
+    const fem_file *fem = what;
+
+    print_head(file, fem);
+    print_labels(file, fem);
+    print_positions(file, fem);
+    print_modes(file, fem);
+    print_matrix(file, 9, "MODAL MASS MATRIX", &fem->body.M);
+    print_matrix(file, 10, "MODAL STIFFNESS MATRIX", &fem->body.K);
+    print_masses(file, fem);
+    print_matrix(file, 13, "MODAL DAMPING MATRIX", &fem->body.D);
+    fputs("**\n** END OF FILE\n", file);
+    return RITZ_OK;
+}
+
+/* ---- exporter ----------------------------------------------------------- */
+
+static ritz_status say_points(const ritz_point_masses *points,
+                              ritz_export_report *report)
+{
+    RITZ_CHECK(ritz_export_say(report,
+                               "nodes %s1 to %s%" PRId64
+                               " are no grids: their masses give MBDyn the "
+                               "inertia of the body and of its modes",
+                               point_label, point_label, points->count));
+    if (points->num_negative > 0)
+        RITZ_CHECK(ritz_export_say(
+            report,
+            "%" PRId64 " of their masses are negative: rotations of grids have "
+            "inertia that no positive masses give (%.2g of the largest)",
+            points->num_negative, -points->least));
+    return RITZ_OK;
+}
+
+/* An interface node of MBDyn takes its orientation from its grid. */
+static ritz_status say_rotations(const ritz_floating *body,
+                                 ritz_export_report *report)
+{
+    int64_t without = 0;
+
+    for (int64_t k = 0; k < body->count; k++)
+        without += !body->rotates[k];
+    if (without == 0)
+        return RITZ_OK;
+    return ritz_export_say(
+        report,
+        "%" PRId64 " of %" PRId64 " grids have no rotations: an interface node "
+        "there turns with the frame, as if the body were rigid",
+        without, body->count);
+}
+
+static ritz_status say_losses(const ritz_reduced *reduced, const fem_file *fem,
+                              ritz_export_report *report)
+{
+    RITZ_CHECK(say_points(&fem->points, report));
+    RITZ_CHECK(say_rotations(&fem->body, report));
+    RITZ_CHECK(ritz_floating_say_damping(reduced, &fem->body, report));
+    if (fem->body.D.val)
+        RITZ_CHECK(ritz_export_say(report,
+                                   "the joint takes damping of the file by "
+                                   "'damping from file'"));
+    return ritz_export_say(report,
+                           "inputs, outputs, ports and units are left out: the "
+                           "file has no place for them but comments");
+}
+
+static ritz_status write_body(const ritz_export_object *object,
+                              const ritz_export_request *request,
+                              ritz_export_report *report)
+{
+    const ritz_floating_request frame = ritz_floating_asked(request);
+    RITZ_OWN(fem_file) fem = {0};
+
+    RITZ_CHECK(ritz_floating_of(object->reduced, &frame, &fem.body));
+    RITZ_CHECK(ritz_point_masses_of(&fem.body.inertia, &fem.body.invariants,
+                                    &fem.body.M, &fem.points));
+    RITZ_CHECK(ritz_certificate(object, request->stamp, &fem.certificate));
+    RITZ_CHECK(ritz_sink_write(request->output, print_file, &fem));
+    RITZ_CHECK(ritz_floating_say(&fem.body, report));
+    return say_losses(object->reduced, &fem, report);
+}
+
+const ritz_exporter ritz_exporter_mbdyn = {
+    .name = "mbdyn",
+    .summary = "a body for the modal joint of MBDyn (.fem)",
+    .reference = "MBDyn2017",
+    .kind = "reduced",
+    .takes = RITZ_EXPORT_REDUCED | RITZ_EXPORT_FRAME,
+    .write = write_body,
+};
