@@ -306,6 +306,8 @@ static ritz_status project_matrices(const floating_source *s, ritz_floating *f)
     RITZ_CHECK(ritz_dense_congruence(&s->model.M, &f->U, &f->M));
     if (s->model.D.val)
         RITZ_CHECK(ritz_dense_project(&s->model.D, &f->V, &f->D));
+    if (f->D.val && ritz_dense_asymmetry(&f->D) <= RITZ_SYMMETRIC)
+        ritz_dense_symmetrise(&f->D); /* simulators compare bits */
     if (f->reference == RITZ_REFERENCE_NONE)
         return RITZ_OK;
     RITZ_CHECK(ritz_eigen_dense(&f->K, &f->M, &pairs));
