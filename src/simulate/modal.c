@@ -125,56 +125,6 @@ ritz_oscillator ritz_oscillator_over(double lambda, double d, double h)
     return by_complex_roots(lambda, d, h);
 }
 
-typedef struct groups {
-    int64_t count;
-    int64_t *first;  /* count + 1 */
-    int64_t *member; /* of group k: member[first[k]] ... */
-} groups;
-
-/* Connected parts of the graph of D, in the order of their first modes. */
-
-static bool couples_modes(const ritz_dense *D, double floor, int64_t i,
-                          int64_t j)
-{
-    return i != j && (fabs(ritz_dense_col(D, j)[i]) > floor ||
-                      fabs(ritz_dense_col(D, i)[j]) > floor);
-}
-
-static void groups_free(groups *g)
-{
-    RITZ_FREE(g->first, g->member);
-    *g = (groups){0};
-}
-
-/* Entries below 64 eps of the largest couple nothing. */
-static ritz_status groups_new(const ritz_dense *D, groups *out)
-{
-    RITZ_OWN(groups) g = {0};
-    RITZ_OWN_ARRAY bool *seen = NULL;
-    int64_t n = D->nrow;
-    int64_t end = 0; /* of members */
-    double floor = RITZ_SUM_ROUNDING * ritz_dense_max(D);
-
-    RITZ_CHECK_NEW(g.first, n + 1);
-    RITZ_CHECK_NEW(g.member, n);
-    RITZ_CHECK_NEW(seen, n);
-    for (int64_t j = 0; j < n; j++) {
-        if (seen[j])
-            continue;
-        seen[j] = true;
-        g.member[end] = j;
-        for (int64_t next = end++; next < end; next++)
-            for (int64_t i = j + 1; i < n; i++)
-                if (!seen[i] && couples_modes(D, floor, i, g.member[next])) {
-                    seen[i] = true;
-                    g.member[end++] = i;
-                }
-        g.first[++g.count] = end;
-    }
-    RITZ_MOVE(*out, g);
-    return RITZ_OK;
-}
-
 /* Modes that D couples; one alone if `o` is to be used. */
 typedef struct coupled_modes {
     int64_t count; /* g */
@@ -188,7 +138,7 @@ typedef struct coupled_modes {
 typedef struct modal {
     int64_t num_groups;
     coupled_modes *group;
-    groups parts;
+    ritz_groups parts;
     double *f, *g; /* n, modal forces and their rates */
     double *z, *z1;
 } modal;
@@ -203,7 +153,7 @@ static void release_modal(void *own)
         ritz_dense_free(&s->group[k].W[1]);
     }
     free(s->group);
-    groups_free(&s->parts);
+    ritz_groups_free(&s->parts);
     RITZ_FREE(s->f, s->g, s->z, s->z1, s);
 }
 
@@ -368,7 +318,8 @@ static ritz_status start_modal(const ritz_motion *motion, double step,
     out->own = s;
     out->advance = advance_modal;
     out->free = release_modal;
-    RITZ_CHECK(groups_new(&motion->D, &s->parts));
+    RITZ_CHECK(ritz_groups_new(
+        &motion->D, RITZ_SUM_ROUNDING * ritz_dense_max(&motion->D), &s->parts));
     RITZ_CHECK_NEW(s->group, s->parts.count);
     s->num_groups = s->parts.count;
     RITZ_CHECK_NEW(s->f, motion->n);

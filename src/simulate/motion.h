@@ -94,6 +94,19 @@ void ritz_effective_free(ritz_effective *F);
 
 void ritz_motion_free(ritz_motion *motion);
 
+/* Modes, or states, that a matrix couples. */
+typedef struct ritz_groups {
+    int64_t count;
+    int64_t *first;  /* count + 1 */
+    int64_t *member; /* of group k: member[first[k]] ... */
+} ritz_groups;
+
+/** Connected parts of the graph of a square matrix, of whose entries those up
+ * to @p floor couple nothing. */
+ritz_status ritz_groups_new(const ritz_dense *D, double floor,
+                            ritz_groups *out);
+void ritz_groups_free(ritz_groups *groups);
+
 /* A motion on its way. */
 typedef struct ritz_march {
     const ritz_motion *motion; /* borrowed */
