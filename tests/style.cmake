@@ -65,7 +65,9 @@ file(GLOB_RECURSE files CONFIGURE_DEPENDS
     ${PROJECT_SOURCE_DIR}/src/*.[ch] ${PROJECT_SOURCE_DIR}/formats/*.[ch]
     ${PROJECT_SOURCE_DIR}/tools/*.[ch] ${PROJECT_SOURCE_DIR}/libexec/*.[ch]
     ${PROJECT_SOURCE_DIR}/tests/*.[ch])
-foreach(file ${files})
+# not fmu/fmi, which are others' headers
+file(GLOB more CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/fmu/*.[ch])
+foreach(file ${files} ${more})
     style_stamp(format ${file} ${PROJECT_SOURCE_DIR}/.clang-format
         ${CLANG_FORMAT} --dry-run -Werror ${file})
 endforeach()

@@ -1,0 +1,496 @@
+/* SPDX-License-Identifier: 0BSD */
+#include "instance.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Log a sentence of an instance that may not be there. */
+static void log_text(const fmu_callback *to, const char *name, const char *text)
+{
+    if (to->callback)
+        to->log(to->callback, to->environment, name, FMU_ERROR, text);
+}
+
+fmu_status fmu_complain(const fmu_instance *instance, const char *format, ...)
+{
+    char text[FMU_MESSAGE_SIZE];
+    va_list args;
+
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    log_text(&instance->to, instance->name, text);
+    return FMU_ERROR;
+}
+
+fmu_status fmu_expect(const fmu_instance *instance, fmu_mode mode,
+                      const char *function)
+{
+    static const char *const modes[] = {"instantiated", "being initialised",
+                                        "running", "terminated"};
+
+    if (instance->mode == mode)
+        return FMU_OK;
+    return fmu_complain(instance, "%s: the instance is %s, it should be %s",
+                        function, modes[instance->mode], modes[mode]);
+}
+
+/* ---- a new instance ----------------------------------------------------- */
+
+static int hex_digit(char c)
+{
+    static const char digits[] = "0123456789abcdefABCDEF";
+    const char *at = c ? strchr(digits, c) : NULL;
+    const int digit = at ? (int)(at - digits) : -1;
+
+    return digit < 16 ? digit : digit - 6;
+}
+
+/* Where the path of a URI "file:///..." or "file:/..." begins; a path is taken
+   for itself. */
+static const char *skip_scheme(const char *uri)
+{
+    static const char scheme[] = "file:";
+
+    if (strncmp(uri, scheme, sizeof scheme - 1) != 0)
+        return uri;
+    uri += sizeof scheme - 1;
+    if (strncmp(uri, "//", 2) == 0) {
+        const char *path = strchr(uri + 2, '/');
+
+        return path ? path : uri;
+    }
+    return uri;
+}
+
+/* FOLDER/ritz.bin; NULL: no memory. */
+static char *path_of_model(const char *resources, bool is_uri)
+{
+    static const char file[] = "/ritz.bin";
+    const char *from = is_uri ? skip_scheme(resources) : resources;
+    const bool coded = is_uri && from != resources;
+    char *path = malloc(strlen(from) + sizeof file);
+    char *to = path;
+
+    if (!path)
+        return NULL;
+    while (*from) {
+        const int high = coded && *from == '%' ? hex_digit(from[1]) : -1;
+        const int low = high >= 0 ? hex_digit(from[2]) : -1;
+
+        *to = *from;
+        if (low >= 0)
+            *to = (char)(16 * high + low);
+        to++;
+        from += low >= 0 ? 3 : 1;
+    }
+    memcpy(to, file, sizeof file);
+    return path;
+}
+
+/* Token and resources belong together: both are of one modelDescription. */
+static bool read_model(const fmu_request *request, fmu_model *model,
+                       char why[FMU_MESSAGE_SIZE])
+{
+    char *path = path_of_model(request->resources, request->is_uri);
+    char cause[FMU_MESSAGE_SIZE] = "there is no memory";
+    bool whole = path && fmu_model_read(path, model, cause);
+
+    if (whole &&
+        (!request->token || strcmp(model->token, request->token) != 0)) {
+        snprintf(cause, sizeof cause,
+                 "it belongs to the token '%s', not to '%.80s'", model->token,
+                 request->token ? request->token : "");
+        fmu_model_free(model);
+        whole = false;
+    }
+    if (!whole)
+        snprintf(why, FMU_MESSAGE_SIZE, "'%.150s' is refused: %.300s",
+                 path ? path : "ritz.bin", cause);
+    free(path);
+    return whole;
+}
+
+static bool make_room(const char *name, fmu_instance *s)
+{
+    const size_t n = s->model.num_states + 1; /* none is no failure */
+
+    s->x = calloc(n, sizeof *s->x);
+    s->work = calloc(n, sizeof *s->work);
+    s->u = calloc(s->model.num_inputs + 1, sizeof *s->u);
+    s->name = malloc(strlen(name) + 1);
+    if (s->name)
+        memcpy(s->name, name, strlen(name) + 1);
+    return s->x && s->work && s->u && s->name;
+}
+
+fmu_instance *fmu_new(const fmu_request *request)
+{
+    const char *name = request->name ? request->name : "";
+    char why[FMU_MESSAGE_SIZE] = "there is no memory for an instance";
+    fmu_instance *s = NULL;
+
+    if (!request->resources) {
+        log_text(&request->to, name, "no folder of resources is given");
+        return NULL;
+    }
+    s = calloc(1, sizeof *s);
+    if (s && read_model(request, &s->model, why) && make_room(name, s)) {
+        s->steps_itself = request->steps_itself;
+        s->to = request->to;
+        return s;
+    }
+    log_text(&request->to, name, why);
+    fmu_free(s);
+    return NULL;
+}
+
+void fmu_free(fmu_instance *instance)
+{
+    if (!instance)
+        return;
+    fmu_model_free(&instance->model);
+    fmu_steps_free(&instance->steps);
+    free(instance->x);
+    free(instance->u);
+    free(instance->work);
+    free(instance->name);
+    free(instance);
+}
+
+fmu_status fmu_reset(fmu_instance *instance)
+{
+    for (size_t k = 0; k < instance->model.num_states; k++)
+        instance->x[k] = 0.0;
+    for (size_t k = 0; k < instance->model.num_inputs; k++)
+        instance->u[k] = 0.0;
+    instance->time = 0.0;
+    instance->mode = FMU_INSTANTIATED;
+    return FMU_OK;
+}
+
+/* ---- values ------------------------------------------------------------- */
+
+typedef enum fmu_kind {
+    FMU_TIME,
+    FMU_INPUT,
+    FMU_OUTPUT,
+    FMU_STATE,
+    FMU_DERIVATIVE,
+    FMU_NOTHING,
+} fmu_kind;
+
+/* What a value reference means, and its number among its kind. */
+static fmu_kind find_reference(const fmu_model *m, size_t reference,
+                               size_t *number)
+{
+    const size_t count[] = {1, m->num_inputs, m->num_outputs, m->num_states,
+                            m->num_states};
+
+    for (int kind = FMU_TIME; kind < FMU_NOTHING; kind++) {
+        if (reference < count[kind]) {
+            *number = reference;
+            return (fmu_kind)kind;
+        }
+        reference -= count[kind];
+    }
+    return FMU_NOTHING;
+}
+
+static double derivative_of(const fmu_instance *s, size_t i)
+{
+    const fmu_model *m = &s->model;
+    const fmu_block *b = &m->block[m->block_of[i]];
+    double sum = 0.0;
+
+    for (size_t j = b->first; j < b->first + b->count; j++)
+        sum += fmu_model_A(m, i, j) * s->x[j];
+    for (size_t j = 0; j < m->num_inputs; j++)
+        sum += m->B[j * m->num_states + i] * s->u[j];
+    return sum;
+}
+
+fmu_status fmu_set_time(fmu_instance *instance, double time)
+{
+    if (!isfinite(time))
+        return fmu_complain(instance, "a time is not finite");
+    instance->time = time;
+    return FMU_OK;
+}
+
+fmu_status fmu_get(const fmu_instance *instance, const unsigned *reference,
+                   size_t count, double *value)
+{
+    const fmu_instance *s = instance;
+
+    for (size_t k = 0; k < count; k++) {
+        size_t i = 0;
+
+        switch (find_reference(&s->model, reference[k], &i)) {
+        case FMU_TIME:
+            value[k] = s->time;
+            break;
+        case FMU_INPUT:
+            value[k] = s->u[i];
+            break;
+        case FMU_OUTPUT:
+            value[k] = fmu_model_output(&s->model, i, s->x, s->u);
+            break;
+        case FMU_STATE:
+            value[k] = s->x[i];
+            break;
+        case FMU_DERIVATIVE:
+            value[k] = derivative_of(s, i);
+            break;
+        case FMU_NOTHING:
+            return fmu_complain(s, "there is no variable %u", reference[k]);
+        }
+    }
+    return FMU_OK;
+}
+
+/* Where a value goes; NULL, and a sentence, if it may not be set now. */
+static double *find_target(const fmu_instance *s, unsigned reference)
+{
+    const bool early =
+        s->mode == FMU_INSTANTIATED || s->mode == FMU_INITIALISING;
+    size_t i = 0;
+    const fmu_kind kind = find_reference(&s->model, reference, &i);
+
+    if (kind == FMU_INPUT && s->mode != FMU_TERMINATED)
+        return &s->u[i];
+    if (kind == FMU_STATE && early)
+        return &s->x[i];
+    (void)fmu_complain(s,
+                       kind == FMU_STATE
+                           ? "variable %u, a state, is set before the "
+                             "simulation only"
+                           : "variable %u cannot be set",
+                       reference);
+    return NULL;
+}
+
+fmu_status fmu_set(fmu_instance *instance, const unsigned *reference,
+                   size_t count, const double *value)
+{
+    for (size_t k = 0; k < count; k++) {
+        double *target = find_target(instance, reference[k]);
+
+        if (!target)
+            return FMU_ERROR;
+        if (!isfinite(value[k]))
+            return fmu_complain(instance, "variable %u is set to %g",
+                                reference[k], value[k]);
+        *target = value[k];
+    }
+    return FMU_OK;
+}
+
+/* ---- states ------------------------------------------------------------- */
+
+static fmu_status check_count(const fmu_instance *s, size_t count)
+{
+    if (count == s->model.num_states)
+        return FMU_OK;
+    return fmu_complain(s, "there are %zu states, not %zu", s->model.num_states,
+                        count);
+}
+
+/* memcpy, for which none may be NULL. */
+static void copy(double *to, const double *from, size_t count)
+{
+    for (size_t k = 0; k < count; k++)
+        to[k] = from[k];
+}
+
+fmu_status fmu_set_states(fmu_instance *instance, const double *x, size_t count)
+{
+    if (check_count(instance, count) != FMU_OK)
+        return FMU_ERROR;
+    for (size_t k = 0; k < count; k++)
+        if (!isfinite(x[k]))
+            return fmu_complain(instance, "state %zu is set to %g", k + 1,
+                                x[k]);
+    copy(instance->x, x, count);
+    return FMU_OK;
+}
+
+fmu_status fmu_get_states(const fmu_instance *instance, double *x, size_t count)
+{
+    if (check_count(instance, count) != FMU_OK)
+        return FMU_ERROR;
+    copy(x, instance->x, count);
+    return FMU_OK;
+}
+
+fmu_status fmu_get_nominals(const fmu_instance *instance, double *x,
+                            size_t count)
+{
+    if (check_count(instance, count) != FMU_OK)
+        return FMU_ERROR;
+    copy(x, instance->model.nominal, count);
+    return FMU_OK;
+}
+
+fmu_status fmu_get_derivatives(const fmu_instance *instance, double *dx,
+                               size_t count)
+{
+    if (check_count(instance, count) != FMU_OK)
+        return FMU_ERROR;
+    fmu_model_derive(&instance->model, instance->x, instance->u, dx);
+    return FMU_OK;
+}
+
+fmu_status fmu_do_step(fmu_instance *instance, double from, double h)
+{
+    char why[FMU_MESSAGE_SIZE];
+    double *before = instance->x;
+
+    if (!instance->steps_itself)
+        return fmu_complain(instance, "an instance for model exchange makes "
+                                      "no steps");
+    if (fmu_expect(instance, FMU_RUNNING, "a step") != FMU_OK)
+        return FMU_ERROR;
+    if (!(h > 0.0) || !isfinite(from) || !isfinite(from + h))
+        return fmu_complain(instance, "a step from %g over %g is none", from,
+                            h);
+    if (!fmu_propagate(&instance->model, &instance->steps, h, instance->u,
+                       before, instance->work, why))
+        return fmu_complain(instance, "%s", why);
+    instance->x = instance->work;
+    instance->work = before;
+    instance->time = from + h;
+    return FMU_OK;
+}
+
+/* ---- derivatives -------------------------------------------------------- */
+
+/* d unknown / d known; NAN: one of them is neither. */
+static double partial(const fmu_model *m, unsigned unknown, unsigned known)
+{
+    size_t i = 0, j = 0;
+    const fmu_kind of = find_reference(m, unknown, &i);
+    const fmu_kind by = find_reference(m, known, &j);
+
+    if (of == FMU_OUTPUT && by == FMU_INPUT)
+        return m->D[j * m->num_outputs + i];
+    if (of == FMU_OUTPUT && by == FMU_STATE)
+        return m->C[j * m->num_outputs + i];
+    if (of == FMU_DERIVATIVE && by == FMU_INPUT)
+        return m->B[j * m->num_states + i];
+    if (of == FMU_DERIVATIVE && by == FMU_STATE)
+        return fmu_model_A(m, i, j);
+    return (double)NAN;
+}
+
+fmu_status fmu_differentiate(const fmu_instance *instance,
+                             const fmu_partials *partials, bool adjoint,
+                             const double *seed, double *out)
+{
+    const size_t rows = adjoint ? partials->num_knowns : partials->num_unknowns;
+    const size_t cols = adjoint ? partials->num_unknowns : partials->num_knowns;
+
+    for (size_t r = 0; r < rows; r++) {
+        out[r] = 0.0;
+        for (size_t c = 0; c < cols; c++) {
+            const unsigned unknown = partials->unknown[adjoint ? c : r];
+            const unsigned known = partials->known[adjoint ? r : c];
+            const double entry = partial(&instance->model, unknown, known);
+
+            if (isnan(entry))
+                return fmu_complain(instance,
+                                    "variable %u has no derivative with "
+                                    "respect to variable %u",
+                                    unknown, known);
+            out[r] += entry * seed[c];
+        }
+    }
+    return FMU_OK;
+}
+
+fmu_status fmu_dependencies(const fmu_instance *instance, unsigned unknown,
+                            unsigned *known, size_t *count)
+{
+    const fmu_model *m = &instance->model;
+    const size_t first_state = 1 + m->num_inputs + m->num_outputs;
+    const size_t first_derivative = first_state + m->num_states;
+    size_t i = 0;
+    const fmu_kind kind = find_reference(m, unknown, &i);
+
+    *count = 0;
+    if (kind != FMU_OUTPUT && kind != FMU_DERIVATIVE)
+        return fmu_complain(instance, "variable %u depends on no other",
+                            unknown);
+    for (size_t k = 1; k < first_derivative; k++) {
+        if (k > m->num_inputs && k < first_state)
+            continue;
+        if (partial(m, unknown, (unsigned)k) == 0.0)
+            continue;
+        if (known)
+            known[*count] = (unsigned)k;
+        (*count)++;
+    }
+    return FMU_OK;
+}
+
+/* ---- what changes ------------------------------------------------------- */
+
+/* The token, the mode and the time, inputs, states. */
+enum { STATE_HEAD = FMU_TOKEN_SIZE - 1, STATE_NUMBERS = 2 };
+
+size_t fmu_state_size(const fmu_instance *instance)
+{
+    return STATE_HEAD + (STATE_NUMBERS + instance->model.num_inputs +
+                         instance->model.num_states) *
+                            sizeof(double);
+}
+
+void fmu_state_save(const fmu_instance *instance, unsigned char *bytes)
+{
+    const size_t p = instance->model.num_inputs;
+    const double head[STATE_NUMBERS] = {(double)instance->mode, instance->time};
+
+    memcpy(bytes, instance->model.token, STATE_HEAD);
+    bytes += STATE_HEAD;
+    memcpy(bytes, head, sizeof head);
+    memcpy(bytes + sizeof head, instance->u, p * sizeof(double));
+    memcpy(bytes + sizeof head + p * sizeof(double), instance->x,
+           instance->model.num_states * sizeof(double));
+}
+
+fmu_status fmu_state_check(const fmu_instance *instance,
+                           const unsigned char *bytes, size_t size)
+{
+    double value = 0.0;
+
+    if (size != fmu_state_size(instance) ||
+        memcmp(bytes, instance->model.token, STATE_HEAD) != 0)
+        return fmu_complain(instance, "it is no state of this model");
+    for (size_t k = STATE_HEAD; k < size; k += sizeof value) {
+        memcpy(&value, bytes + k, sizeof value);
+        if (!isfinite(value) || (k == STATE_HEAD && value != 0.0 &&
+                                 value != 1.0 && value != 2.0 && value != 3.0))
+            return fmu_complain(instance, "the state holds %g", value);
+    }
+    return FMU_OK;
+}
+
+fmu_status fmu_state_load(fmu_instance *instance, const unsigned char *bytes)
+{
+    const size_t p = instance->model.num_inputs;
+    double head[STATE_NUMBERS];
+
+    if (fmu_state_check(instance, bytes, fmu_state_size(instance)) != FMU_OK)
+        return FMU_ERROR;
+    bytes += STATE_HEAD;
+    memcpy(head, bytes, sizeof head);
+    instance->mode = (fmu_mode)(int)head[0];
+    instance->time = head[1];
+    memcpy(instance->u, bytes + sizeof head, p * sizeof(double));
+    memcpy(instance->x, bytes + sizeof head + p * sizeof(double),
+           instance->model.num_states * sizeof(double));
+    return FMU_OK;
+}

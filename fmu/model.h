@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: 0BSD */
+/*
+ * A linear model x' = A x + B u, y = C x + D u as resources/ritz.bin holds it.
+ *
+ * A is block diagonal: the states of an oscillator are q and q', of
+ * q'' + d q' + lambda q = B_q' u; those of a dense block are any. The file is
+ * little-endian; numbers have 8 bytes, matrices are stored by columns:
+ *
+ *     bytes  "RITZFMU1"
+ *     hash   FNV-1a of 64 bits, of all bytes behind it [FowlerNollVo2019]
+ *     bytes  64 hexadecimal digits, the instantiation token
+ *     whole  numbers of inputs, outputs, states, blocks
+ *     whole  of each block its states if it is dense; 0: an oscillator
+ *     real   of each block A, or lambda and d
+ *     real   B, C, D, and the nominal value of each state
+ */
+#ifndef RITZ_FMU_MODEL_H
+#define RITZ_FMU_MODEL_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum { FMU_TOKEN_SIZE = 65, FMU_MESSAGE_SIZE = 512 };
+
+typedef struct fmu_block {
+    size_t first, count; /* of its states */
+    bool oscillates;
+    const double *A; /* count x count; of an oscillator lambda and d */
+} fmu_block;
+
+typedef struct fmu_model {
+    size_t num_inputs, num_outputs, num_states, num_blocks;
+    fmu_block *block;
+    size_t *block_of; /* num_states */
+    const double *B, *C, *D, *nominal;
+    char token[FMU_TOKEN_SIZE];
+    double *numbers; /* all of the above */
+} fmu_model;
+
+/**
+ * Read a file, and refuse anything that is not exactly such a model.
+ *
+ * @param[out] why  a sentence if it is refused
+ */
+bool fmu_model_read(const char *path, fmu_model *out,
+                    char why[FMU_MESSAGE_SIZE]);
+void fmu_model_free(fmu_model *model);
+
+/** dx = A x + B u */
+void fmu_model_derive(const fmu_model *model, const double *x, const double *u,
+                      double *dx);
+
+/** Output @p i of C x + D u. */
+double fmu_model_output(const fmu_model *model, size_t i, const double *x,
+                        const double *u);
+
+/** Entry of A. */
+double fmu_model_A(const fmu_model *model, size_t i, size_t j);
+
+#endif

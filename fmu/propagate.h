@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: 0BSD */
+/*
+ * Inputs that are held over a step h are propagated without an error but
+ * rounding,
+ *
+ *     x_1 = exp(A h) x_0 + int_0^h exp(A s) ds B u,
+ *
+ * block by block.
+ */
+#ifndef RITZ_FMU_PROPAGATE_H
+#define RITZ_FMU_PROPAGATE_H
+
+#include "model.h"
+
+/* exp(A h) and its integral of one step size. */
+typedef struct fmu_step {
+    double h;
+    double *numbers; /* of each block: what propagate.c makes of it; NULL: this
+                        step is not made */
+    uint64_t used;   /* when it was, by a count */
+} fmu_step;
+
+/* Step sizes differ in their last digits, as each is the difference of two
+   times: the last few are kept. */
+enum { FMU_STEPS = 4 };
+
+typedef struct fmu_steps {
+    fmu_step step[FMU_STEPS];
+    uint64_t count; /* of steps made so far */
+} fmu_steps;
+
+/**
+ * @param[in]  h   positive
+ * @param[out] x1  must not be @p x0
+ * @return false: there is no memory, or the motion leaves all bounds
+ */
+bool fmu_propagate(const fmu_model *model, fmu_steps *steps, double h,
+                   const double *u, const double *x0, double *x1,
+                   char why[FMU_MESSAGE_SIZE]);
+void fmu_steps_free(fmu_steps *steps);
+
+/*
+ * Of one oscillator, with S the response of q to a unit velocity:
+ *
+ *     q_1 = hold q_0 + S v_0 + P f,   v_1 = -lambda S q_0 + rate v_0 + S f
+ */
+typedef struct fmu_oscillator {
+    double hold, S, rate, P;
+} fmu_oscillator;
+
+fmu_oscillator fmu_oscillator_over(double lambda, double d, double h);
+
+/**
+ * E = exp(A h) and G = int_0^h exp(A s) ds B of a dense block.
+ *
+ * @param[in]  A  k x k
+ * @param[in]  B  k x p, columns @p stride apart
+ * @param[out] E  k x k, then k x p of G
+ * @return false: there is no memory
+ */
+bool fmu_exponential(size_t k, size_t p, const double *A, const double *B,
+                     size_t stride, double h, double *E);
+
+#endif
