@@ -12,6 +12,7 @@ pkg_check_modules(ARPACK REQUIRED IMPORTED_TARGET arpack)
 pkg_check_modules(BLAS REQUIRED IMPORTED_TARGET openblas)
 pkg_check_modules(JANSSON REQUIRED IMPORTED_TARGET jansson)
 pkg_check_modules(LAPACKE REQUIRED IMPORTED_TARGET lapacke)
+pkg_check_modules(LIBARCHIVE REQUIRED IMPORTED_TARGET libarchive)
 pkg_check_modules(MATIO REQUIRED IMPORTED_TARGET matio)
 pkg_check_modules(NETTLE REQUIRED IMPORTED_TARGET nettle)
 pkg_check_modules(NLOPT REQUIRED IMPORTED_TARGET nlopt)
@@ -81,18 +82,23 @@ prefer_archives(mumps_uses dmumps_c "${DMUMPS};${ZMUMPS}" dmumps_seq zmumps_seq
 prefer_archives(lapacke_uses LAPACKE_dsyev PkgConfig::LAPACKE lapacke)
 prefer_archives(arpack_uses dsaupd_ PkgConfig::ARPACK arpack)
 prefer_archives(slicot_uses ab13ad_ ${SLICOT} slicot)
+# Writes the zip files of FMUs, for ritz-export alone. It loads ten libraries, and
+# its archive needs most of them as well: the linker names it in programs that call
+# it, and in no other.
+list(GET LIBARCHIVE_LINK_LIBRARIES 0 archive_uses)
+set(archive_uses -Wl,--push-state,--as-needed,${archive_uses},--pop-state)
 
 set(ritz_shared_uses hdf5::hdf5 PkgConfig::LAPACKE PkgConfig::BLAS
-    PkgConfig::ARPACK PkgConfig::MATIO PkgConfig::NETTLE PkgConfig::NLOPT
-    PkgConfig::YAML PkgConfig::ZLIB
+    PkgConfig::ARPACK PkgConfig::LIBARCHIVE PkgConfig::MATIO PkgConfig::NETTLE
+    PkgConfig::NLOPT PkgConfig::YAML PkgConfig::ZLIB
     ${CHOLMOD} ${SUITESPARSE_CONFIG} ${DMUMPS} ${ZMUMPS} ${SLICOT} m)
 
 # Include folders and definitions are the same for archives and shared
 # libraries.
 add_library(ritz_headers INTERFACE)
 foreach(package hdf5::hdf5 PkgConfig::LAPACKE PkgConfig::BLAS PkgConfig::ARPACK
-        PkgConfig::MATIO PkgConfig::NETTLE PkgConfig::NLOPT PkgConfig::YAML
-        PkgConfig::ZLIB)
+        PkgConfig::LIBARCHIVE PkgConfig::MATIO PkgConfig::NETTLE
+        PkgConfig::NLOPT PkgConfig::YAML PkgConfig::ZLIB)
     target_include_directories(ritz_headers INTERFACE
         $<TARGET_PROPERTY:${package},INTERFACE_INCLUDE_DIRECTORIES>)
     target_compile_definitions(ritz_headers INTERFACE
@@ -104,7 +110,8 @@ target_link_libraries(ritz_hdf5 INTERFACE ritz_headers ${hdf5_uses}
 add_library(ritz_uses INTERFACE)
 target_link_libraries(ritz_uses INTERFACE ritz_headers ${hdf5_uses}
     ${lapacke_uses} ${arpack_uses} ${cholmod_uses} ${mumps_uses} ${slicot_uses}
-    PkgConfig::NETTLE PkgConfig::NLOPT PkgConfig::YAML ${ritz_beneath})
+    PkgConfig::NETTLE PkgConfig::NLOPT PkgConfig::YAML ${archive_uses}
+    ${ritz_beneath})
 
 # For --engine slepc, if they are installed: PETSc and SLEPc with the shared
 # libraries that they use; libraries that PETSc does not use are linked as above.

@@ -9,6 +9,7 @@ const ritz_exporter *const ritz_exporters[] = {
     &ritz_exporter_dmig,
     &ritz_exporter_exudyn,
     &ritz_exporter_fxbody,
+    &ritz_exporter_fmu,
     &ritz_exporter_matlab,
     &ritz_exporter_matrix_market,
     &ritz_exporter_openfast,

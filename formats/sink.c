@@ -89,6 +89,9 @@ ritz_status ritz_export_check(const ritz_exporter *exporter,
                    "%s has one way of writing, without text, "
                    "dense or digits",
                    exporter->name);
+    RITZ_REFUSE_IF(request->fmi > 0 && !(exporter->takes & RITZ_EXPORT_FMI),
+                   RITZ_ERR_ARGUMENT, "%s has no version of FMI",
+                   exporter->name);
     RITZ_REFUSE_IF(
         request->numbered && !(exporter->takes & RITZ_EXPORT_NUMBERED),
         RITZ_ERR_ARGUMENT, "%s has no continuations to number", exporter->name);

@@ -94,6 +94,8 @@ typedef struct ritz_export_request {
                               NULL: "basic" */
     const char *reference;   /* of its modes: "none", "mean-axis" or "tangent";
                               NULL: "none" */
+    int64_t fmi;             /* fmu: version 2 or 3; 0: 3 */
+    const char *runtime;     /* fmu: folder of ritz_fmu.so and its licence */
     const ritz_stamp *stamp; /* container: its stamp; NULL: an empty one */
 } ritz_export_request;
 
@@ -127,6 +129,7 @@ enum {
     RITZ_EXPORT_FRAME = 256,
     RITZ_EXPORT_PORTS = 512,
     RITZ_EXPORT_ID = 2048,
+    RITZ_EXPORT_FMI = 1024,
 };
 
 typedef struct ritz_exporter {
@@ -149,6 +152,7 @@ extern const ritz_exporter ritz_exporter_container;
 extern const ritz_exporter ritz_exporter_dmig;
 extern const ritz_exporter ritz_exporter_exudyn;
 extern const ritz_exporter ritz_exporter_fxbody;
+extern const ritz_exporter ritz_exporter_fmu;
 extern const ritz_exporter ritz_exporter_matlab;
 extern const ritz_exporter ritz_exporter_matrix_market;
 extern const ritz_exporter ritz_exporter_mbdyn;

@@ -147,6 +147,11 @@
    rounding; sound models have -3e-9, measured. */
 #define RITZ_NEGATIVE_STIFFNESS 1e-6
 
+/* A state's nominal value, of its largest response to a unit step: an integrator
+   whose local error is relative to it adds up some hundred times that error,
+   measured on accelerations of a rotor. */
+#define RITZ_NOMINAL_SHARE 0x1p-8
+
 /* Comparison of models */
 
 /* MAC from which on two modes are the same mode. */

@@ -39,8 +39,13 @@ works 'response: |H| is that of a free rod' awk 'NR == 2 {
 
 # the tools find ritz-walk, which reads HDF5 files first, relative to themselves
 "$bin/ritz-import" -q --stiffness "$data/chain/chain.K.mtx" \
-    --mass "$data/chain/chain.M.mtx" --dofs "$data/chain/chain.dofs" -o chain.h5
+    --mass "$data/chain/chain.M.mtx" --dofs "$data/chain/chain.dofs" \
+    --input push=1:1 -o chain.h5
 works 'an installed tool reads a container' there/bin/ritz-info chain.h5
+"$bin/ritz-basis" -q full chain.h5 -o chain-basis.h5
+"$bin/ritz-reduce" -q chain.h5 chain-basis.h5 -o chain-small.h5
+works 'an installed ritz-export finds the program of FMUs' \
+    there/bin/ritz-export -q --force --to fmu chain-small.h5 -o chain.fmu
 cp -r there moved
 works 'and does where it was moved to' moved/bin/ritz-info chain.h5
 rm -r moved/libexec

@@ -1,5 +1,7 @@
 #include "print/print.h"
 
+#include "cli/libexec.h"
+
 RITZ_ARRAY_OF(ritz_dense);
 RITZ_ARRAY_OF(model);
 
@@ -386,6 +388,14 @@ static int kinds_of(const ritz_exporter *exporter)
     return kinds;
 }
 
+/* Where the program of FMUs is installed. */
+static ritz_status find_runtime(char folder[PATH_MAX])
+{
+    RITZ_CHECK(libexec_find("ritz_fmu.so", folder));
+    *strrchr(folder, '/') = '\0';
+    return RITZ_OK;
+}
+
 /* Whatever it holds, as the exporter writes that. */
 static ritz_status export_model(cli_run *run, model *m,
                                 const export_options *given,
@@ -394,6 +404,7 @@ static ritz_status export_model(cli_run *run, model *m,
     const ritz_exporter *exporter = given->exporter;
     ritz_export_object object = {0};
     ritz_export_request request = given->request;
+    char runtime[PATH_MAX] = "";
     RITZ_OWN(ritz_shapes) shapes = {0};
 
     if (m->kind == MODEL_RESPONSE) {
@@ -420,6 +431,10 @@ static ritz_status export_model(cli_run *run, model *m,
         object.reduced = &m->reduced;
     }
     request.stamp = cli_stamp(run);
+    if (exporter->takes & RITZ_EXPORT_FMI) {
+        RITZ_CHECK(find_runtime(runtime));
+        request.runtime = runtime;
+    }
     return exporter->write(&object, &request, done);
 }
 

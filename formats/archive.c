@@ -1,0 +1,78 @@
+/*
+ * A zip archive. Times are left out, owners are 0 and modes are fixed, so that
+ * the same files make the same bytes.
+ */
+#include "base/draft.h"
+#include "formats/fmu.h"
+
+#include <archive.h>
+#include <archive_entry.h>
+
+typedef struct archive *zip_writer;
+typedef struct archive_entry *zip_entry;
+
+static void zip_writer_free(zip_writer *a)
+{
+    if (*a)
+        archive_write_free(*a);
+    *a = NULL;
+}
+
+static void zip_entry_free(zip_entry *e)
+{
+    if (*e)
+        archive_entry_free(*e);
+    *e = NULL;
+}
+
+static ritz_status fail_archive(zip_writer a, const char *path)
+{
+    const char *why = archive_error_string(a);
+
+    return ritz_fail(RITZ_ERR_FILE, "'%s' cannot be written to its end: %s",
+                     path, why ? why : "no memory");
+}
+
+static ritz_status put_file(zip_writer a, const char *path,
+                            const ritz_zip_file *from)
+{
+    enum { FILE_MODE = 0644, PROGRAM_MODE = 0755 };
+    RITZ_OWN(zip_entry) head = archive_entry_new();
+
+    RITZ_REFUSE_IF(!head, RITZ_ERR_MEMORY, "no memory for an archive");
+    archive_entry_set_pathname(head, from->path);
+    archive_entry_set_filetype(head, AE_IFREG);
+    archive_entry_set_perm(head, from->runs ? PROGRAM_MODE : FILE_MODE);
+    archive_entry_set_size(head, from->size);
+    if (archive_write_header(a, head) != ARCHIVE_OK)
+        return fail_archive(a, path);
+    if (archive_write_data(a, from->bytes, (size_t)from->size) != from->size)
+        return fail_archive(a, path);
+    return RITZ_OK;
+}
+
+static ritz_status put_files(const ritz_draft *draft,
+                             const ritz_zip_files *files)
+{
+    RITZ_OWN(zip_writer) a = archive_write_new();
+
+    RITZ_REFUSE_IF(!a, RITZ_ERR_MEMORY, "no memory for an archive");
+    if (archive_write_set_format_zip(a) != ARCHIVE_OK ||
+        archive_write_set_options(a, "zip:compression=deflate") != ARCHIVE_OK ||
+        archive_write_open_filename(a, draft->name) != ARCHIVE_OK)
+        return fail_archive(a, draft->path);
+    for (int64_t k = 0; k < files->count; k++)
+        RITZ_CHECK(put_file(a, draft->path, &files->at[k]));
+    if (archive_write_close(a) != ARCHIVE_OK)
+        return fail_archive(a, draft->path);
+    return RITZ_OK;
+}
+
+ritz_status ritz_archive_write(const char *path, const ritz_zip_files *files)
+{
+    RITZ_OWN(ritz_draft) draft = {0};
+
+    RITZ_CHECK_IN(path, ritz_draft_new(path, &draft));
+    RITZ_CHECK(put_files(&draft, files));
+    return ritz_draft_publish(&draft);
+}
