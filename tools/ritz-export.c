@@ -78,6 +78,7 @@ int main(int argc, char **argv)
         CLI_TEXT("reference", &request->reference, "none|mean-axis|tangent",
                  "what its modes are measured from [none; 42, fxbody, sid: by "
                  "frame]"),
+        CLI_INT("fmi", &request->fmi, "N", 2, 3, "version of FMI (fmu) [3]"),
         MODEL_OPTIONS(&given.model),
         CLI_FLAG("states", &given.states,
                  "write the states x' = A x + B u, y = C x + D u, with damping "

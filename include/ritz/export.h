@@ -128,8 +128,8 @@ enum {
     RITZ_EXPORT_NUMBERED = 128,
     RITZ_EXPORT_FRAME = 256,
     RITZ_EXPORT_PORTS = 512,
-    RITZ_EXPORT_ID = 2048,
     RITZ_EXPORT_FMI = 1024,
+    RITZ_EXPORT_ID = 2048,
 };
 
 typedef struct ritz_exporter {
@@ -151,8 +151,8 @@ extern const ritz_exporter ritz_exporter_chrono;
 extern const ritz_exporter ritz_exporter_container;
 extern const ritz_exporter ritz_exporter_dmig;
 extern const ritz_exporter ritz_exporter_exudyn;
-extern const ritz_exporter ritz_exporter_fxbody;
 extern const ritz_exporter ritz_exporter_fmu;
+extern const ritz_exporter ritz_exporter_fxbody;
 extern const ritz_exporter ritz_exporter_matlab;
 extern const ritz_exporter ritz_exporter_matrix_market;
 extern const ritz_exporter ritz_exporter_mbdyn;
