@@ -27,24 +27,37 @@ static void list_formats(void)
            "s  also a state space, as --states makes of the others\n");
 }
 
+static const cli_program program = {
+    .name = "ritz-export",
+    .operands = {{"FILE",
+                  "a reduced component, system, state space, response "
+                  "over hertz or seconds; for shapes also a component or a "
+                  "basis",
+                  false}},
+    .summary = "Write a reduced component for a simulator, or a response "
+               "as a table, and say what\nis known of its errors and "
+               "whether it is stable.",
+    .example = "ritz-export blade-verified.h5 --to exudyn -o blade.hdf5",
+    .output = "the file in that format",
+};
+
 /* Choose the exporter, and refuse options that it does not take. */
-static void settle_options(const cli_program *program, const char *to,
-                           export_options *given)
+static void settle_options(const char *to, export_options *given)
 {
     const ritz_export_request *request = &given->request;
 
     if (!to)
-        cli_refuse(program, "no format, name it with --to; --list shows all");
-    given->exporter = cli_choose(program, "format", to, ritz_exporters);
+        cli_refuse(&program, "no format, name it with --to; --list shows all");
+    given->exporter = cli_choose(&program, "format", to, ritz_exporters);
     if (ritz_export_check(given->exporter, request) != RITZ_OK)
-        cli_refuse(program, "%s", ritz_error_message());
+        cli_refuse(&program, "%s", ritz_error_message());
     if (given->component.count > 0 &&
         !(given->exporter->takes & (RITZ_EXPORT_SHAPES | RITZ_EXPORT_PORTS)))
-        cli_refuse(program,
+        cli_refuse(&program,
                    "--component is for shapes of a basis, and for shapes and "
                    "ports of a system");
     if (given->states && !(given->exporter->takes & RITZ_EXPORT_STATES))
-        cli_refuse(program, "%s takes no state space, --states is not for it",
+        cli_refuse(&program, "%s takes no state space, --states is not for it",
                    to);
 }
 
@@ -94,23 +107,10 @@ int main(int argc, char **argv)
         CLI_ACTION("list", list_formats, "list formats and what they take"),
         {0},
     };
-    const cli_program program = {
-        .name = "ritz-export",
-        .operands = {{"FILE",
-                      "a reduced component, system, state space, response "
-                      "over hertz or seconds; for shapes also a component or a "
-                      "basis",
-                      false}},
-        .summary = "Write a reduced component for a simulator, or a response "
-                   "as a table, and say what\nis known of its errors and "
-                   "whether it is stable.",
-        .example = "ritz-export blade-verified.h5 --to exudyn -o blade.hdf5",
-        .output = "the file in that format",
-    };
     cli_run run;
 
     cli_parse(&program, options, argc, argv, &run);
-    settle_options(&program, to, &given);
+    settle_options(to, &given);
     request->output = run.output;
     return cli_finish(&run, export_run(&run, &given));
 }
