@@ -101,8 +101,7 @@ static void put_measures(FILE *file, const char *by,
     }
 }
 
-static void put_certificate(FILE *file, const certified *c,
-                            const ritz_stamp *stamp)
+static void put_model(FILE *file, const certified *c)
 {
     put_origin(file, c);
     put_band(file, c);
@@ -116,6 +115,18 @@ static void put_certificate(FILE *file, const certified *c,
     put_measures(file, "error, estimated: ", c->estimates);
     if (c->errors->count + c->estimates->count == 0)
         fputs("errors: neither measured nor estimated\n", file);
+}
+
+static void put_certificate(FILE *file, const ritz_export_object *object,
+                            const ritz_stamp *stamp)
+{
+    if (object->reduced || object->states) {
+        const certified c = find_certified(object);
+
+        put_model(file, &c);
+    } else {
+        fprintf(file, "by Ritz %s\n", ritz_version());
+    }
     for (int64_t k = 0; stamp && k < stamp->num_inputs; k++) {
         put_clean(file, "input: ", stamp->input[k]);
         fputc('\n', file);
@@ -129,14 +140,13 @@ static void put_certificate(FILE *file, const certified *c,
 ritz_status ritz_certificate(const ritz_export_object *object,
                              const ritz_stamp *stamp, char **out)
 {
-    const certified c = find_certified(object);
     char *text = NULL;
     size_t size = 0;
     FILE *file = open_memstream(&text, &size);
     bool whole = file != NULL;
 
     if (file) {
-        put_certificate(file, &c, stamp);
+        put_certificate(file, object, stamp);
         whole = !ferror(file);
         whole = fclose(file) == 0 && whole;
     }
@@ -182,4 +192,18 @@ void ritz_comment_put(FILE *file, const char *before, int width,
         } while (rest > 0);
         text += *text == '\n';
     }
+}
+
+void ritz_comment_put_xml(FILE *file, const char *text)
+{
+    fputs("<!--\n", file);
+    for (const char *at = text; *at; at++) {
+        if (*at == '&' || *at == '<' || *at == '>')
+            fputs(*at == '&' ? "&amp;" : *at == '<' ? "&lt;" : "&gt;", file);
+        else
+            fputc(*at, file);
+        if (at[0] == '-' && (at[1] == '-' || at[1] == '\0'))
+            fputc(' ', file);
+    }
+    fputs("-->\n", file);
 }

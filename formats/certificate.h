@@ -10,9 +10,10 @@
 /**
  * Method, order, band of its modes, units, damping, errors with their limits,
  * SHA-256 of each input, and the command; a line each, ended by '\n', control
- * characters replaced by '?'.
+ * characters replaced by '?'. Of an object that is neither a reduced component
+ * nor a state space, inputs and command alone.
  *
- * @param[in]  object  a reduced component or a state space
+ * @param[in]  object  shapes may have a reduced component beside them
  * @param[in]  stamp   inputs and command; NULL: not known
  * @param[out] out     the caller frees it
  */
@@ -28,5 +29,9 @@ ritz_status ritz_certificate(const ritz_export_object *object,
  */
 void ritz_comment_put(FILE *file, const char *before, int width,
                       const char *text);
+
+/** Put it as an XML comment, whose "--" becomes "- -"; markup is replaced by
+ * entities. */
+void ritz_comment_put_xml(FILE *file, const char *text);
 
 #endif

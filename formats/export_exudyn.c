@@ -3,9 +3,13 @@
  * loads [Gerstmayr2023], as release 1.13.6 saves it. Nodes carry translations
  * only, along basic axes, and come in the order of grid ids.
  */
+#include "base/alloc.h"
+#include "formats/certificate.h"
 #include "formats/exudyn.h"
 #include "formats/floating_report.h"
 #include "formats/sink.h"
+
+#include <string.h>
 
 /* ---- constant matrices -------------------------------------------------- */
 
@@ -289,9 +293,16 @@ static ritz_status write_arrays(hid_t file, const exudyn_body *b)
     return RITZ_OK;
 }
 
+/* What the file is made of. */
+typedef struct exudyn_parts {
+    const exudyn_body *body;
+    const char *certificate;
+} exudyn_parts;
+
 static ritz_status write_file(hid_t file, const void *what)
 {
-    const exudyn_body *body = what;
+    const exudyn_parts *parts = what;
+    const exudyn_body *body = parts->body;
     RITZ_OWN(hid_t) group = 0;
 
     RITZ_CHECK(write_arrays(file, body));
@@ -299,7 +310,19 @@ static ritz_status write_file(hid_t file, const void *what)
     RITZ_CHECK(write_text(file, "rigidBodyNodeType",
                           "NodeType.RotationEulerParameters"));
     RITZ_CHECK(ritz_h5_group(file, "postProcessingModes", &group));
-    return label_object(group, "dict");
+    RITZ_CHECK(label_object(group, "dict"));
+    return ritz_h5_set_text(file, "certificate", parts->certificate);
+}
+
+/* Leave whole lines that an attribute has room for. */
+static void cut_lines(char *text)
+{
+    enum { ROOM = 32768 };
+
+    if (strlen(text) >= ROOM) {
+        text[ROOM] = '\0';
+        strrchr(text, '\n')[1] = '\0';
+    }
 }
 
 static ritz_status write_body(const ritz_export_object *object,
@@ -308,12 +331,17 @@ static ritz_status write_body(const ritz_export_object *object,
 {
     RITZ_OWN(exudyn_body) b = {0};
     RITZ_OWN(ritz_draft) draft = {0};
+    RITZ_OWN_ARRAY char *certificate = NULL;
+    exudyn_parts parts = {&b, NULL};
     const ritz_floating_request asked = ritz_floating_asked(request);
 
     RITZ_CHECK(exudyn_body_of(object->reduced, &asked, &b));
     RITZ_CHECK(exudyn_body_say(&b, report));
+    RITZ_CHECK(ritz_certificate(object, request->stamp, &certificate));
+    cut_lines(certificate);
+    parts.certificate = certificate;
     RITZ_CHECK(ritz_draft_new(request->output, &draft));
-    RITZ_CHECK(ritz_sink_fill_h5(&draft, write_file, &b));
+    RITZ_CHECK(ritz_sink_fill_h5(&draft, write_file, &parts));
     return ritz_draft_publish(&draft);
 }
 

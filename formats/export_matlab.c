@@ -5,6 +5,7 @@
  * [MathWorks2019]
  */
 #include "base/alloc.h"
+#include "formats/certificate.h"
 #include "formats/mat_sheet.h"
 
 #include <math.h>
@@ -64,6 +65,7 @@ static ritz_status fill_sheet(const ritz_export_object *object,
     const ritz_reduced *reduced = object->reduced;
     RITZ_OWN(ritz_matrices) list = {0};
     RITZ_OWN(ritz_mat_sheet) s = {0};
+    RITZ_OWN_ARRAY char *certificate = NULL;
 
     /* all but T, which may be large */
     RITZ_CHECK(ritz_export_matrices(
@@ -72,6 +74,8 @@ static ritz_status fill_sheet(const ritz_export_object *object,
     RITZ_CHECK(ritz_mat_put_matrices(&s, &list));
     RITZ_CHECK(reduced ? put_reduced(&s, reduced)
                        : put_states(&s, object->states));
+    RITZ_CHECK(ritz_certificate(object, request->stamp, &certificate));
+    RITZ_CHECK(ritz_mat_put_text(&s, "certificate", certificate));
     RITZ_CHECK(ritz_mat_sheet_publish(&s, &list));
     if (!reduced)
         return ritz_export_say(report, "%s, y = C x + D u",

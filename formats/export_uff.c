@@ -12,11 +12,13 @@
  * six digits. Frames are the basic one, 0.
  */
 #include "base/alloc.h"
+#include "formats/certificate.h"
 #include "formats/sink.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum {
     COLOR = 8,
@@ -164,7 +166,7 @@ static const uff_units *find_units(const char *labels)
 
 typedef struct uff_parts {
     const ritz_shapes *shapes;
-    const ritz_stamp *stamp; /* may be NULL */
+    const char *certificate;
     const trace_edge *edge;
     int64_t num_edges;
 } uff_parts;
@@ -182,9 +184,9 @@ static void end_set(FILE *file)
 /* A text of the width of a line, which may not be blank. */
 static void put_line(FILE *file, const char *text)
 {
-    if (!*text)
+    if (!*text || *text == '\n')
         text = "NONE";
-    for (int k = 0; k < TEXT_WIDTH && text[k]; k++)
+    for (int k = 0; k < TEXT_WIDTH && text[k] && text[k] != '\n'; k++)
         fputc(text[k] < ' ' || text[k] > '~' ? '?' : text[k], file);
     fputc('\n', file);
 }
@@ -272,17 +274,27 @@ static void print_lines(FILE *file, const uff_parts *parts)
         print_line(file, ++number, used, node);
 }
 
-/* Five lines of text: the mode, its origin, and files that were read. */
+/* The first line of a text that begins so; "" if there is none. */
+static const char *line_of(const char *text, const char *begin)
+{
+    while (*text && strncmp(text, begin, strlen(begin)) != 0) {
+        text += strcspn(text, "\n");
+        text += *text == '\n';
+    }
+    return text;
+}
+
+/* Five lines of text: the mode, and what of the certificate there is room for:
+   its origin, the first error, damping and the first input. */
 static void print_texts(FILE *file, const uff_parts *parts, int64_t j)
 {
-    const ritz_stamp *stamp = parts->stamp;
-    char maker[TEXT_WIDTH];
+    const char *at = parts->certificate;
 
     put_line(file, parts->shapes->name[j]);
-    snprintf(maker, sizeof maker, "Ritz %s", ritz_version());
-    put_line(file, maker);
-    for (int64_t k = 0; k < 3; k++)
-        put_line(file, stamp && k < stamp->num_inputs ? stamp->input[k] : "");
+    put_line(file, line_of(at, ""));
+    put_line(file, line_of(at, "error"));
+    put_line(file, line_of(at, "damping: "));
+    put_line(file, line_of(at, "input: "));
 }
 
 static void print_mode(FILE *file, const uff_parts *parts, int64_t j)
@@ -397,9 +409,12 @@ static ritz_status write_shapes(const ritz_export_object *object,
 {
     const ritz_shapes *s = object->shapes;
     RITZ_OWN_ARRAY trace_edge *edge = NULL;
-    uff_parts parts = {.shapes = s, .stamp = request->stamp};
+    RITZ_OWN_ARRAY char *certificate = NULL;
+    uff_parts parts = {.shapes = s};
 
     RITZ_CHECK(check_shapes(s));
+    RITZ_CHECK(ritz_certificate(object, request->stamp, &certificate));
+    parts.certificate = certificate;
     RITZ_CHECK(list_edges(s, &edge, &parts.num_edges));
     parts.edge = edge;
     RITZ_CHECK(ritz_sink_write(request->output, print_sets, &parts));

@@ -2,6 +2,8 @@
  * Shapes as a VTK unstructured grid in XML, all of it text [Schroeder2006]: one
  * vector field for each shape, and the number of each grid.
  */
+#include "base/alloc.h"
+#include "formats/certificate.h"
 #include "formats/sink.h"
 
 #include <inttypes.h>
@@ -56,13 +58,21 @@ static void print_fields(FILE *file, const ritz_shapes *s)
     fputs("</PointData>\n", file);
 }
 
+/* What the file is made of. */
+typedef struct vtu_parts {
+    const ritz_shapes *shapes;
+    const char *certificate;
+} vtu_parts;
+
 static ritz_status print_grid(FILE *file, const void *what)
 {
-    const ritz_shapes *s = what;
+    const vtu_parts *parts = what;
+    const ritz_shapes *s = parts->shapes;
     const ritz_elements *cells = &s->cells;
 
+    fputs("<?xml version=\"1.0\"?>\n", file);
+    ritz_comment_put_xml(file, parts->certificate);
     fprintf(file,
-            "<?xml version=\"1.0\"?>\n"
             "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" "
             "byte_order=\"LittleEndian\">\n<UnstructuredGrid>\n"
             "<Piece NumberOfPoints=\"%" PRId64 "\" NumberOfCells=\"%" PRId64
@@ -83,7 +93,12 @@ static ritz_status write_shapes(const ritz_export_object *object,
                                 const ritz_export_request *request,
                                 ritz_export_report *report)
 {
-    RITZ_CHECK(ritz_sink_write(request->output, print_grid, object->shapes));
+    RITZ_OWN_ARRAY char *certificate = NULL;
+    vtu_parts parts = {object->shapes, NULL};
+
+    RITZ_CHECK(ritz_certificate(object, request->stamp, &certificate));
+    parts.certificate = certificate;
+    RITZ_CHECK(ritz_sink_write(request->output, print_grid, &parts));
     return ritz_shapes_say(object->shapes, report);
 }
 

@@ -4,6 +4,7 @@
  * know others in a mixed mesh.
  */
 #include "base/alloc.h"
+#include "formats/certificate.h"
 #include "formats/sink.h"
 
 #include <inttypes.h>
@@ -63,6 +64,7 @@ typedef struct xdmf_pair {
     const ritz_shapes *shapes;
     int64_t length;     /* of the list of cells */
     const char *beside; /* path of the numbers */
+    const char *certificate;
 } xdmf_pair;
 
 static ritz_status write_heavy(hid_t file, const void *what)
@@ -124,7 +126,9 @@ static ritz_status print_light(FILE *file, const void *what)
     const char *folder = strrchr(pair->beside, '/');
     const char *heavy = folder ? folder + 1 : pair->beside;
 
-    fputs("<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n"
+    fputs("<?xml version=\"1.0\"?>\n", file);
+    ritz_comment_put_xml(file, pair->certificate);
+    fputs("<Xdmf Version=\"3.0\">\n<Domain>\n"
           "<Grid Name=\"shapes\" GridType=\"Uniform\">\n",
           file);
     fprintf(file,
@@ -172,11 +176,13 @@ static ritz_status write_shapes(const ritz_export_object *object,
 {
     const ritz_shapes *shapes = object->shapes;
     RITZ_OWN(ritz_draft) heavy = {0}, light = {0};
-    RITZ_OWN_ARRAY char *beside = NULL;
-    xdmf_pair pair = {shapes, list_cells(&shapes->cells, NULL), NULL};
+    RITZ_OWN_ARRAY char *beside = NULL, *certificate = NULL;
+    xdmf_pair pair = {shapes, list_cells(&shapes->cells, NULL), NULL, NULL};
 
     RITZ_CHECK(name_heavy(request->output, &beside));
+    RITZ_CHECK(ritz_certificate(object, request->stamp, &certificate));
     pair.beside = beside;
+    pair.certificate = certificate;
     RITZ_CHECK(ritz_draft_new(beside, &heavy));
     RITZ_CHECK(ritz_draft_new(request->output, &light));
     RITZ_CHECK(ritz_sink_fill_h5(&heavy, write_heavy, &pair));

@@ -7,6 +7,7 @@
  */
 #include "base/alloc.h"
 #include "base/search.h"
+#include "formats/certificate.h"
 #include "formats/matrix.h"
 #include "formats/sink.h"
 
@@ -42,17 +43,6 @@ static bool is_mirrored(const ritz_matrix *m)
     return true;
 }
 
-static void write_comment(FILE *file, const char *comment)
-{
-    while (comment && *comment) {
-        size_t length = strcspn(comment, "\r\n");
-
-        fprintf(file, "%% %.*s\n", (int)length, comment);
-        comment += length;
-        comment += *comment != '\0';
-    }
-}
-
 static ritz_status write_market(FILE *file, const void *what)
 {
     const market_job *all = what;
@@ -71,7 +61,7 @@ static ritz_status write_market(FILE *file, const void *what)
     fprintf(file, "%%%%MatrixMarket matrix %s %s %s\n",
             array ? "array" : "coordinate", m->imaginary ? "complex" : "real",
             symmetric ? "symmetric" : "general");
-    write_comment(file, all->comment);
+    ritz_comment_put(file, "% ", 0, all->comment ? all->comment : "");
     fprintf(file, "%" PRId64 " %" PRId64, A->nrow, A->ncol);
     if (!array)
         fprintf(file, " %" PRId64, count);
@@ -123,6 +113,17 @@ static ritz_status name_file(const char *output, const char *name, char **out)
     return RITZ_OK;
 }
 
+/* "matrix K" and the certificate below it. */
+static ritz_status join_comment(const char *name, const char *certificate,
+                                char **out)
+{
+    const int64_t room = (int64_t)(strlen(name) + strlen(certificate)) + 10;
+
+    RITZ_CHECK_NEW(*out, room);
+    snprintf(*out, (size_t)room, "matrix %s\n%s", name, certificate);
+    return RITZ_OK;
+}
+
 /* If the output's name has a '%', each matrix is written to a file of its own,
    with the name of the matrix in place of the '%'. Otherwise one matrix is
    written: the one that --matrix names, else K, or A of a state space. */
@@ -132,8 +133,7 @@ static ritz_status write_matrices(const ritz_export_object *object,
 {
     bool pattern = strchr(request->output, '%') != NULL;
     const char *one = object->states ? "A" : "K";
-    const char *method = object->states ? object->states->origin.method
-                                        : object->reduced->origin.method;
+    RITZ_OWN_ARRAY char *certificate = NULL;
     RITZ_OWN(ritz_matrices) list = {0};
 
     RITZ_CHECK(ritz_export_damped(object, request, pattern ? NULL : one, report,
@@ -141,13 +141,12 @@ static ritz_status write_matrices(const ritz_export_object *object,
     RITZ_REFUSE_IF(list.count != 1 && !pattern, RITZ_ERR_ARGUMENT,
                    "a Matrix Market file holds one matrix: name it with "
                    "--matrix, or write '%%' for it in the output's name");
+    RITZ_CHECK(ritz_certificate(object, request->stamp, &certificate));
     for (int64_t k = 0; k < list.count; k++) {
         const char *name = list.matrix[k].name;
-        char comment[4 * RITZ_NAME_SIZE];
-        RITZ_OWN_ARRAY char *path = NULL;
+        RITZ_OWN_ARRAY char *path = NULL, *comment = NULL;
 
-        snprintf(comment, sizeof comment, *method ? "%s, reduced by %s" : "%s",
-                 name, method);
+        RITZ_CHECK(join_comment(name, certificate, &comment));
         RITZ_CHECK(name_file(request->output, name, &path));
         RITZ_CHECK(ritz_matrix_market_write(path, &list.matrix[k], comment));
     }

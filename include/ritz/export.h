@@ -106,7 +106,8 @@ typedef struct ritz_export_report {
     char (*line)[256];
 } ritz_export_report;
 
-/* What is exported: one of these, the others are NULL. */
+/* What is exported: one of these, the others are NULL; beside shapes `reduced`
+   is the component that they are of, if they are of one. */
 typedef struct ritz_export_object {
     const ritz_reduced *reduced;
     const ritz_state_space *states;

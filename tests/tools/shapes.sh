@@ -175,6 +175,9 @@ for name in "small.xdmf", "small.vtu":
 print("agree" if worst < 1e-9 else worst)
 END
 expect 0 'agree' $python compare.py
+for file in small.vtu small.xdmf; do
+    expect 0 'error, estimated: ' cat $file
+done
 ritz-reduce -q --without-basis rotor.h5 basis.h5 -o bare.h5
 expect 1 'without-basis' ritz-export --to vtu bare.h5 -o none.vtu
 expect 0 'column' ritz-export --to vtu --modes 1,7 --component rotor.h5 basis.h5 \

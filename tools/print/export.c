@@ -424,6 +424,7 @@ static ritz_status export_model(cli_run *run, model *m,
         sink_names(run, NULL, "shapes", shapes.count, shapes.name);
         cli_record(run, exporter->name, shapes.count);
         object.shapes = &shapes;
+        object.reduced = m->kind == MODEL_REDUCED ? &m->reduced : NULL;
     } else {
         cli_record(run, exporter->name, m->reduced.K.nrow);
         RITZ_CHECK_IN(run->operand[0], model_install(m, &given->model.damper));

@@ -104,10 +104,41 @@ static void a_certificate_says_what_is_not_known(void **state)
                                 "errors: neither measured nor estimated\n"));
 }
 
+/* XML allows neither "--" nor markup in a comment. */
+static void an_xml_comment_has_no_markup(void **state)
+{
+    char *out = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&out, &size);
+
+    (void)state;
+    assert_non_null(file);
+    ritz_comment_put_xml(file, "a --to b <c> & ---\nd-");
+    assert_int_equal(fclose(file), 0);
+    assert_string_equal(out, "<!--\na - -to b &lt;c&gt; &amp; - - -\nd- -->\n");
+    free(out);
+}
+
+/* Shapes of a component that is not reduced have inputs and a command. */
+static void other_objects_have_inputs_and_command(void **state)
+{
+    const ritz_stamp stamp = {.command = "ritz-export --to vtu rotor.h5"};
+    const ritz_export_object object = {0};
+    RITZ_OWN_ARRAY char *got = NULL;
+
+    (void)state;
+    assert_ok(ritz_certificate(&object, &stamp, &got));
+    assert_memory_equal(got, "by Ritz ", 8);
+    assert_string_equal(strchr(got, '\n'),
+                        "\ncommand: ritz-export --to vtu rotor.h5\n");
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(long_lines_are_cut_at_blanks_and_between_letters),
     cmocka_unit_test(a_certificate_has_errors_inputs_and_command),
     cmocka_unit_test(a_certificate_says_what_is_not_known),
+    cmocka_unit_test(an_xml_comment_has_no_markup),
+    cmocka_unit_test(other_objects_have_inputs_and_command),
 };
 
 TEST_MODULE(certificate, tests, NULL, NULL)
