@@ -14,51 +14,15 @@ import scipy.sparse
 from Basilisk.simulation import spacecraft, svIntegrators
 from Basilisk.utilities import SimulationBaseClass, macros
 
+from beam import AREA, RHO, beam
 from common import Tap, Tools
 
 LENGTH, CELLS, MODES = 5.0, 8, 8
-E, G, RHO, AREA, I_Y, I_Z, J = 7e9, 2.7e9, 2700.0, 1e-3, 2e-6, 5e-6, 4e-6
 HUB_MASS, HUB_INERTIA = 300.0, (150.0, 250.0, 300.0)
 
 
-def bending(k, m, h, EI, sign):
-    """Stiffness and consistent mass of a beam, deflection and rotation."""
-    K = EI / h**3 * numpy.array([[12, 6*h, -12, 6*h],
-                                 [6*h, 4*h*h, -6*h, 2*h*h],
-                                 [-12, -6*h, 12, -6*h],
-                                 [6*h, 2*h*h, -6*h, 4*h*h]])
-    M = RHO * AREA * h / 420 * numpy.array([[156, 22*h, 54, -13*h],
-                                            [22*h, 4*h*h, 13*h, -3*h*h],
-                                            [54, 13*h, 156, -22*h],
-                                            [-13*h, -3*h*h, -22*h, 4*h*h]])
-    turn = numpy.diag([1, sign, 1, sign])
-    k[...] += turn @ K @ turn
-    m[...] += turn @ M @ turn
-
-
-def boom():
-    """K and M of a boom along x, six dofs a grid, with the hub at grid 1."""
-    n, h = 6 * (CELLS + 1), LENGTH / CELLS
-    K, M = numpy.zeros((n, n)), numpy.zeros((n, n))
-    for e in range(CELLS):
-        first = 6 * e
-        for dofs, EI, sign in (([1, 5, 7, 11], E * I_Z, 1),
-                               ([2, 4, 8, 10], E * I_Y, -1)):
-            at = numpy.ix_(first + numpy.array(dofs), first + numpy.array(dofs))
-            k, m = K[at], M[at]
-            bending(k, m, h, EI, sign)
-            K[at], M[at] = k, m
-        for dofs, stiff, mass in (([0, 6], E * AREA, RHO * AREA),
-                                  ([3, 9], G * J, RHO * (I_Y + I_Z))):
-            at = numpy.ix_(first + numpy.array(dofs), first + numpy.array(dofs))
-            K[at] += stiff / h * numpy.array([[1, -1], [-1, 1]])
-            M[at] += mass * h / 6 * numpy.array([[2, 1], [1, 2]])
-    M[range(6), range(6)] += (HUB_MASS,) * 3 + HUB_INERTIA
-    return K, M
-
-
 def make_component(tools):
-    for name, A in zip("KM", boom()):
+    for name, A in zip("KM", beam(LENGTH, CELLS, HUB_MASS, HUB_INERTIA)):
         scipy.io.mmwrite(tools.path(name + ".mtx"),
                          scipy.sparse.coo_matrix(A), precision=17,
                          symmetry="symmetric")
