@@ -130,7 +130,7 @@ static ritz_status take_whole(const ritz_cdb *all, const cdb_command *command,
 
     if (!is_whole(field, out))
         return ritz_cdb_refuse(all, command->line,
-                               "'%.*s' of '%.*s' is no whole number",
+                               "'%.*s' of '%.*s' is not a whole number",
                                QUOTED(field), QUOTED(command->field[0]));
     return RITZ_OK;
 }
@@ -142,8 +142,8 @@ static ritz_status take_real(const ritz_cdb *all, const cdb_command *command,
 
     if (!is_real(field, out))
         return ritz_cdb_refuse(all, command->line,
-                               "'%.*s' of '%.*s' is no number", QUOTED(field),
-                               QUOTED(command->field[0]));
+                               "'%.*s' of '%.*s' is not a number",
+                               QUOTED(field), QUOTED(command->field[0]));
     return RITZ_OK;
 }
 
@@ -224,7 +224,7 @@ static ritz_piece cut_field(ritz_piece line, int64_t from, int64_t width)
         (ritz_piece){line.text + at, rest < width ? rest : width});
 }
 
-/* Whether a line ends a block: -1, or the command that has it. */
+/* Whether a line ends a block: -1, or a command N or EN, which has the -1. */
 static bool ends_block(ritz_piece line)
 {
     const ritz_piece text = ritz_piece_trim(line);
@@ -251,7 +251,7 @@ static ritz_status take_wholes(const ritz_cdb *all, const cdb_form *form,
         if (field.length == 0)
             continue;
         if (!is_whole(field, &out[k]))
-            return ritz_cdb_refuse(all, number, "'%.*s' is no whole number",
+            return ritz_cdb_refuse(all, number, "'%.*s' is not a whole number",
                                    QUOTED(field));
         *count = k + 1;
     }
@@ -264,7 +264,7 @@ static ritz_status add_node(ritz_cdb *all, const ritz_cdb_node *node)
 {
     if (node->id < 1)
         return ritz_cdb_refuse(all, node->line,
-                               "%" PRId64 " is no number of a node", node->id);
+                               "%" PRId64 " is not a node number", node->id);
     RITZ_CHECK_ROOM(all->node, all->num_nodes, all->nodes_room);
     all->node[all->num_nodes++] = *node;
     return RITZ_OK;
@@ -280,7 +280,7 @@ static ritz_status take_place(const ritz_cdb *all, const cdb_form *form,
     double *to = k < 3 ? &node->x[k] : &node->angle[k - 3];
 
     if (!is_real(field, to))
-        return ritz_cdb_refuse(all, node->line, "'%.*s' is no number",
+        return ritz_cdb_refuse(all, node->line, "'%.*s' is not a number",
                                QUOTED(field));
     return RITZ_OK;
 }
@@ -320,8 +320,8 @@ static ritz_status take_node(ritz_cdb *all, const cdb_command *command)
         return RITZ_OK;
     if (all->turned && !coded)
         return ritz_cdb_refuse(all, command->line,
-                               "'N' after CSYS is not read: write the model "
-                               "by CDWRITE");
+                               "'N' after CSYS, along other axes, is not read: "
+                               "let ANSYS write the model by CDWRITE");
     if (angles &&
         (all->num_nodes == 0 || all->node[all->num_nodes - 1].id != node.id))
         return ritz_cdb_refuse(
@@ -365,7 +365,7 @@ static ritz_status take_type(ritz_cdb *all, const cdb_command *command)
     return RITZ_OK;
 }
 
-/* KEYOPT,TYPE,3,VALUE tells directions of some elements. */
+/* KEYOPT,TYPE,3,VALUE says which directions the nodes of some elements have. */
 static ritz_status take_option(ritz_cdb *all, const cdb_command *command)
 {
     int64_t number = 0, which = 0, value = 0;
@@ -390,14 +390,15 @@ static ritz_status add_joined(ritz_cdb *all, int64_t node)
 {
     if (node < 0)
         return ritz_cdb_refuse(all, all->element[all->num_elements - 1].line,
-                               "%" PRId64 " is no number of a node", node);
+                               "%" PRId64 " is not a node number", node);
     RITZ_CHECK_ROOM(all->joined, all->num_joined, all->joined_room);
     all->joined[all->num_joined++] = node;
     all->element[all->num_elements - 1].count++;
     return RITZ_OK;
 }
 
-/* Begin an element whose nodes stand in `whole` from `from` on. */
+/* Add an element, whose first nodes are the numbers of `whole` from `from` to
+   `to`. */
 static ritz_status begin_element(ritz_cdb *all, int64_t type, int64_t line,
                                  const int64_t *whole, int64_t from, int64_t to)
 {
@@ -409,7 +410,7 @@ static ritz_status begin_element(ritz_cdb *all, int64_t type, int64_t line,
     return RITZ_OK;
 }
 
-/* Nodes of the element from the next line. */
+/* Add the other `due` nodes of the last element, from the lines that follow. */
 static ritz_status continue_element(ritz_cdb *all, const cdb_form *form,
                                     int64_t due)
 {
@@ -440,8 +441,10 @@ static ritz_status take_solid(ritz_cdb *all, const cdb_form *form,
     if (count < SOLID_FIELDS || nodes < 0 || nodes > MOST_NODES)
         return ritz_cdb_refuse(all, line,
                                "an element has %" PRId64 " fields and %" PRId64
-                               " nodes",
-                               count, nodes);
+                               " nodes: at least %d fields and at most %d "
+                               "nodes are read",
+                               count, nodes, (int)SOLID_FIELDS,
+                               (int)MOST_NODES);
     RITZ_CHECK(begin_element(all, whole[1], line, whole, SOLID_FIELDS,
                              SOLID_FIELDS + (here < nodes ? here : nodes)));
     return continue_element(all, form, nodes - here);
@@ -466,7 +469,8 @@ static ritz_status take_elements(ritz_cdb *all, const cdb_command *command)
     return ritz_cdb_refuse(all, command->line, "'EBLOCK' has no end");
 }
 
-/* EN and E: they are counted, but for EN,R5.5,ATTR,-1 behind a block. */
+/* EN and E make elements that are not read, and are counted. EN,R5.5,ATTR,-1
+   behind a block makes none. */
 static ritz_status count_element(ritz_cdb *all, const cdb_command *command)
 {
     const bool attributes = is_word(field_of(command, 2), "ATTR");
@@ -480,7 +484,7 @@ static ritz_status count_element(ritz_cdb *all, const cdb_command *command)
 
 /* ---- supports and constraints -------------------------------------------- */
 
-/* Directions of a label: "ROTX" is the fourth; 0: it is none. */
+/* The direction that a label names, as a bit; 0: it names none. */
 static uint8_t mask_of(ritz_piece label)
 {
     static const char *const names[] = {"UX",   "UY",   "UZ",
@@ -582,8 +586,9 @@ static ritz_status take_command(ritz_cdb *all, const cdb_command *command)
         if (verbs[k].take)
             return verbs[k].take(all, command);
         return ritz_cdb_refuse(all, command->line,
-                               "'%s' changes the model by what Ritz does not "
-                               "evaluate: write it by CDWRITE",
+                               "'%s' changes the model, and Ritz does not "
+                               "evaluate it: let ANSYS write the model by "
+                               "CDWRITE",
                                verbs[k].name);
     }
     return RITZ_OK;

@@ -1,5 +1,5 @@
-/* A coded database of ANSYS between its lines and the deck: private to the
- * reader. */
+/* What the lines of a coded database of ANSYS say, before a deck is made of it:
+ * private to the reader. */
 #ifndef RITZ_FORMATS_CDB_H
 #define RITZ_FORMATS_CDB_H
 
@@ -19,7 +19,7 @@ typedef struct ritz_cdb_node {
 /* An element of the library, by its number. */
 typedef struct ritz_cdb_kind {
     int64_t number; /* 185 of SOLID185 */
-    int64_t size;   /* nodes that picture it; more may follow */
+    int64_t size;   /* nodes with dofs, which draw it; others may follow */
     ritz_cell cell; /* 0: it is not drawn */
     uint8_t mask;   /* bit c: its nodes have direction c; 0: not known */
     bool ties;      /* it makes dofs depend on others */
@@ -27,15 +27,15 @@ typedef struct ritz_cdb_kind {
 
 /* ET and KEYOPT of a number of element type. */
 typedef struct ritz_cdb_type {
-    int64_t number;            /* that elements refer to */
+    int64_t number;            /* by which elements refer to it */
     const ritz_cdb_kind *kind; /* NULL: it is not known */
     int64_t option_3;          /* KEYOPT(3) */
 } ritz_cdb_type;
 
 typedef struct ritz_cdb_element {
-    int64_t type;  /* that it refers to */
-    int64_t first; /* of its nodes */
-    int64_t count; /* nodes, those that are 0 too */
+    int64_t type;  /* the number of its element type */
+    int64_t first; /* its first node in `joined` */
+    int64_t count; /* nodes, with those that are 0 */
     int64_t line;
 } ritz_cdb_element;
 
@@ -70,7 +70,7 @@ typedef struct ritz_cdb {
     int64_t num_ties, ties_room;
     ritz_cdb_tie *tie;
     int64_t num_strange; /* elements that are not read */
-    int64_t open_type;   /* of TYPE */
+    int64_t open_type;   /* set by TYPE, for EBLOCK without SOLID */
     bool turned;         /* CSYS: N is not along global axes */
 } ritz_cdb;
 

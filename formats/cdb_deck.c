@@ -1,8 +1,8 @@
 /*
- * What a coded database says together: grids with their axes, cells for
- * pictures, and supports. A node has a row for each direction that one of its
- * elements gives it; in which order the rows of matrices are is told by their
- * mapping file alone.
+ * Makes a deck of what the lines of a coded database say: grids with their
+ * axes, cells for pictures, and supports. A node has a row for each direction
+ * that one of its elements gives it. Only the mapping file of the matrices says
+ * in which order their rows are.
  *
  * Axes of a node are turned by THXY about z, then by THYZ about the new x, then
  * by THZX about the new y: their columns are Rz(THXY) Rx(THYZ) Ry(THZX).
@@ -108,8 +108,8 @@ static ritz_status place_nodes(const ritz_cdb *all, ritz_grids *out)
 
 /* ---- elements ------------------------------------------------------------ */
 
-/* A cell of an element: corners alone where nodes between them are missing, or
-   where corners coincide. */
+/* A cell of an element. It has corners only where nodes between them are
+   missing, or where corners coincide. */
 typedef struct cdb_cell {
     ritz_cell kind; /* 0: none */
     int64_t count;
@@ -245,7 +245,8 @@ static int64_t find_grid(const ritz_deck *deck, int64_t id)
     return id == 0 ? -1 : ritz_grids_find(&deck->grids, id);
 }
 
-/* RITZ_CDB_MASS21: KEYOPT(3) 2 has no rotations, 3 is plane, 4 is plane without. */
+/* RITZ_CDB_MASS21: with KEYOPT(3) = 2 it has no rotations, with 3 it is plane,
+   with 4 it is plane without a rotation. */
 static uint8_t mask_of(const ritz_cdb_type *type)
 {
     static const uint8_t mass[] = {ALL_SIX, ALL_SIX, SOLID, FRAME, PLANE};
@@ -283,8 +284,8 @@ static ritz_status note_imposed(const ritz_cdb *all,
     if (!support->imposed || out->imposed)
         return RITZ_OK;
     (void)ritz_cdb_refuse(all, support->line,
-                          "'D' moves nodes by what is not zero: imposed motion "
-                          "is no part of a component, use a port and an input");
+                          "'D' imposes a motion that is not zero, which no "
+                          "component has: use a port and an input");
     return ritz_deck_keep_sentence(&out->imposed);
 }
 
@@ -306,7 +307,7 @@ static ritz_status list_supports(const ritz_cdb *all, ritz_deck *out)
         else
             return ritz_cdb_refuse(all, support->line,
                                    "'D' holds node %" PRId64
-                                   ", which is not there",
+                                   ", which does not exist",
                                    support->node);
     }
     for (int64_t k = 0; k < out->grids.count; k++)

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What a reduced component and a state space both tell of themselves. */
+/* What is certified of a reduced component or of a state space. */
 typedef struct certified {
     const char *what;
     const ritz_origin *origin;
@@ -37,7 +37,7 @@ static certified find_certified(const ritz_export_object *object)
                        &s->errors,    &s->estimates, ritz_state_space_order(s)};
 }
 
-/* Text of others, which may hold any byte but NUL. */
+/* Text of files and commands, which may hold any byte but NUL. */
 static void put_clean(FILE *file, const char *before, const char *text)
 {
     fputs(before, file);
@@ -158,7 +158,7 @@ ritz_status ritz_certificate(const ritz_export_object *object,
     return RITZ_OK;
 }
 
-/* Bytes of the next comment among `length` of a line. */
+/* How many of the `length` bytes of a line the next comment takes. */
 static int cut_line(const char *text, int length, int width)
 {
     int whole = 0;

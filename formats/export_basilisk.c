@@ -9,11 +9,13 @@
  *
  * A mass m on a spring along the unit vector e at r beside the grid obeys this
  * with q = sqrt(m) rho, p = sqrt(m) e and h = r x p: it stands for a mode with
- * h . p = 0, m = |p|^2, r = p x h / |p|^2. A body that turns about e with the
- * inertia I stands for p = 0 by h = sqrt(I) e. Other modes fit neither.
+ * h . p = 0, m = |p|^2, r = p x h / |p|^2. A body of inertia I that spins
+ * about e stands for a mode with p = 0 and h = sqrt(I) e. Other modes fit
+ * neither.
  *
- * The effectors carry their mass in all directions. What the hub has left is
- * the component's mass less theirs, so that the rigid whole stays what it was.
+ * Basilisk moves the mass of an effector with the hub in all directions. The
+ * hub has the mass and inertia of the component without those of the effectors,
+ * so that the rigid whole stays what it was.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -32,9 +34,9 @@ enum { MOTIONS = RITZ_FRAME_MOTIONS };
 
 typedef enum fit {
     FIT_SPRING,  /* a mass on a spring */
-    FIT_SPINNER, /* a body that turns */
+    FIT_SPINNER, /* a spinning body */
     FIT_NONE,    /* h . p is not 0 */
-    FIT_STILL,   /* it acts on nothing */
+    FIT_STILL,   /* it does not act on the hub */
 } fit;
 
 typedef struct effector {
@@ -53,8 +55,8 @@ typedef struct spacecraft {
     ritz_interface_form form;
     int64_t count;
     effector *effector;
-    rigid_part hub;              /* that is left */
-    double centre[3], tensor[9]; /* of it, about its centre */
+    rigid_part hub;              /* without the effectors */
+    double centre[3], tensor[9]; /* of the hub, inertia about its centre */
     char *certificate;
 } spacecraft;
 
@@ -91,7 +93,7 @@ static ritz_status find_modes(const ritz_interface_form *form,
     return ritz_eigen_dense(&K, &M, pairs);
 }
 
-static fit judge(const effector *e, const rigid_part *whole)
+static fit choose_fit(const effector *e, const rigid_part *whole)
 {
     const double p = sqrt(dot(e->p, e->p)), h = sqrt(dot(e->h, e->h));
     const double trace = whole->second[0] + whole->second[4] + whole->second[8];
@@ -128,12 +130,12 @@ static ritz_status list_effectors(const rigid_part *whole, spacecraft *s)
         memcpy(e->h, ritz_dense_col(&part, k) + 3, sizeof e->h);
         size = sqrt(dot(e->p, e->p) * dot(e->h, e->h));
         e->skew = size > 0.0 ? fabs(dot(e->h, e->p)) / size : 0.0;
-        e->kind = judge(e, whole);
+        e->kind = choose_fit(e, whole);
     }
     return RITZ_OK;
 }
 
-/* Where the mass of a spring is, and how large. */
+/* The mass on the spring, and its place. */
 static double place_mass(const effector *e, double out[static 3])
 {
     const double mass = dot(e->p, e->p);
@@ -146,7 +148,7 @@ static double place_mass(const effector *e, double out[static 3])
 
 /* ---- the hub ------------------------------------------------------------- */
 
-/* The whole, from the mass matrix of the six motions. */
+/* Mass and inertia of the component, from the mass matrix of six motions. */
 static void read_whole(const ritz_dense *M, rigid_part *out)
 {
     ritz_inertia inertia = {0};
@@ -193,8 +195,8 @@ static ritz_status settle_hub(spacecraft *s)
     double least[3] = {0}, square = 0.0;
 
     RITZ_REFUSE_IF(hub->mass <= 0.0, RITZ_ERR_ARGUMENT,
-                   "the modes take more mass than the component has, %.6g are "
-                   "left of the hub: put the hub's own mass on the grid of the "
+                   "the effectors have more mass than the component, and leave "
+                   "the hub %.6g: put the hub's own mass on the grid of the "
                    "port, or keep fewer modes",
                    hub->mass);
     for (int i = 0; i < 3; i++)
@@ -207,8 +209,8 @@ static ritz_status settle_hub(spacecraft *s)
                                                 s->centre[i] * s->centre[j]);
     RITZ_CHECK(ritz_general_symmetric_values(&tensor, least));
     RITZ_REFUSE_IF(least[0] <= 0.0, RITZ_ERR_ARGUMENT,
-                   "the hub that is left has a moment of inertia of %.6g: put "
-                   "the hub's own inertia on the grid of the port, or keep "
+                   "the effectors leave the hub a moment of inertia of %.6g: "
+                   "put the hub's own inertia on the grid of the port, or keep "
                    "fewer modes",
                    least[0]);
     return RITZ_OK;
@@ -223,7 +225,7 @@ static ritz_status check_interface(const spacecraft *s, const char *units)
                    "matrices in these units, with --units \"kg m s\"",
                    *units ? units : "not known");
     RITZ_REFUSE_IF(s->form.count != 1, RITZ_ERR_ARGUMENT,
-                   "one grid holds a flexible part in Basilisk, and the ports "
+                   "Basilisk holds a flexible part by one grid, and the ports "
                    "have %" PRId64 ": name the port at the hub with --port",
                    s->form.count);
     RITZ_CHECK(ritz_interface_form_held(&s->form, &rigid, &flexible));
@@ -231,6 +233,20 @@ static ritz_status check_interface(const spacecraft *s, const char *units)
                    "the body is held at the ground, at %.3g Hz, and a "
                    "spacecraft is free: import it without supports",
                    rigid);
+    return RITZ_OK;
+}
+
+static ritz_status demand_effectors(const spacecraft *s)
+{
+    int64_t count = 0;
+
+    for (int64_t k = 0; k < s->count; k++)
+        count += s->effector[k].kind == FIT_SPRING ||
+                 s->effector[k].kind == FIT_SPINNER;
+    RITZ_REFUSE_IF(count == 0, RITZ_ERR_ARGUMENT,
+                   "of %" PRId64 " modes none is a mass on a spring or a "
+                   "spinning body, and without effectors the hub is rigid",
+                   s->count);
     return RITZ_OK;
 }
 
@@ -247,6 +263,7 @@ static ritz_status fill_spacecraft(const ritz_export_object *object,
     RITZ_CHECK(ritz_dense_block(&s->form.M, 0, MOTIONS, 0, MOTIONS, &M));
     read_whole(&M, &whole);
     RITZ_CHECK(list_effectors(&whole, s));
+    RITZ_CHECK(demand_effectors(s));
     s->hub = whole;
     for (int64_t k = 0; k < s->count; k++)
         take_away(&s->effector[k], &s->hub);
@@ -264,8 +281,8 @@ static void put_vector(FILE *file, const double v[static 3])
 static void put_hub(FILE *file, const spacecraft *s)
 {
     fprintf(file,
-            "# what the hub has beside the effectors, from the grid of the "
-            "port and\n# about its own centre\nHUB = {\"mass\": %.17g,\n"
+            "# the hub without the effectors: centre from the grid of the "
+            "port,\n# inertia about the centre\nHUB = {\"mass\": %.17g,\n"
             "       \"centre\": ",
             s->hub.mass);
     put_vector(file, s->centre);
@@ -391,7 +408,7 @@ static ritz_status put_module(FILE *file, const void *what)
     put_hub(file, s);
     fputs("# masses on springs\n", file);
     put_list(file, "SPRINGS", FIT_SPRING, s);
-    fputs("# bodies that turn\n", file);
+    fputs("# spinning bodies\n", file);
     put_list(file, "SPINNERS", FIT_SPINNER, s);
     fputs(functions, file);
     return RITZ_OK;
@@ -410,14 +427,14 @@ static ritz_status say_mode(const effector *e, int64_t k,
                                k + 1, e->hertz, dot(e->p, e->p));
     case FIT_SPINNER:
         return ritz_export_say(report,
-                               "mode %" PRId64 ", %.6g Hz: a body that turns, "
+                               "mode %" PRId64 ", %.6g Hz: a spinning body of "
                                "inertia %.6g",
                                k + 1, e->hertz, dot(e->h, e->h));
     case FIT_NONE:
         return ritz_export_say(report,
                                "warning: mode %" PRId64 ", %.6g Hz, is left "
-                               "out: it twists as it moves, |h.p| is %.2g of "
-                               "|h||p|, and no effector does",
+                               "out: it twists as it moves (|h.p| is %.2g of "
+                               "|h||p|), which no effector does",
                                k + 1, e->hertz, e->skew);
     default:
         return ritz_export_say(report,
@@ -436,8 +453,8 @@ static ritz_status say_spacecraft(const spacecraft *s,
         s->form.grid[0], s->form.port[0]));
     for (int64_t k = 0; k < s->count; k++)
         RITZ_CHECK(say_mode(&s->effector[k], k, report));
-    RITZ_CHECK(ritz_export_say(
-        report, "the hub that is left has a mass of %.6g", s->hub.mass));
+    RITZ_CHECK(
+        ritz_export_say(report, "the hub keeps a mass of %.6g", s->hub.mass));
     if (reduced->K4.val)
         RITZ_CHECK(ritz_export_say(report, "structural damping is left out"));
     return ritz_export_say(report,

@@ -38,8 +38,8 @@ static int64_t count_modes(const chrono_load *load)
     return load->form.K.ncol - RITZ_FRAME_MOTIONS * load->form.count;
 }
 
-/* Frequencies with the frames held; of coordinates that were kept they are
-   those of K and M among the modes. */
+/* Frequencies with the frames held. They are computed from the blocks of K and
+   M, since the form has none where it kept the columns of the basis. */
 static ritz_status list_frequencies(chrono_load *load)
 {
     const int64_t first = RITZ_FRAME_MOTIONS * load->form.count;
@@ -58,7 +58,7 @@ static ritz_status list_frequencies(chrono_load *load)
     return RITZ_OK;
 }
 
-/* Rows of a matrix; {0}: of zeros. */
+/* Rows of A, or of zeros if A is {0}. */
 static void put_matrix(FILE *file, const char *name, const ritz_dense *A,
                        int64_t order)
 {
@@ -102,14 +102,15 @@ static ritz_status say_load(const chrono_load *load,
         count_modes(load)));
     if (rigid > RITZ_HELD * flexible)
         RITZ_CHECK(ritz_export_say(report,
-                                   "the ground holds the body, its motion as a "
-                                   "rigid one is at %.3g Hz",
+                                   "the ground holds the body: rigid motion "
+                                   "has %.3g Hz",
                                    rigid));
     if (reduced->K4.val)
         RITZ_CHECK(ritz_export_say(report, "structural damping is left out"));
     return ritz_export_say(report,
-                           "the matrices are of small motions about the place "
-                           "at rest; inputs, outputs and shapes are left out");
+                           "the matrices are for small motions about the "
+                           "frames at rest; inputs, outputs and shapes are "
+                           "left out");
 }
 
 static ritz_status write_load(const ritz_export_object *object,

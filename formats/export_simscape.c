@@ -21,7 +21,7 @@
 
 typedef struct flexible_solid {
     ritz_interface_form form;
-    double *origin, *turn; /* P and Q, by columns */
+    double *origin, *turn; /* P and Q, column-major */
     char (*name)[RITZ_NAME_SIZE];
     char *certificate;
     double rigid_hz, flexible_hz; /* as ritz_interface_form_held has them */
@@ -33,7 +33,7 @@ static void flexible_solid_free(flexible_solid *s)
     RITZ_FREE(s->origin, s->turn, s->name, s->certificate);
 }
 
-/* What the port's name has no room for is cut off in front of the grid. */
+/* "PORT grid 5"; a port's name that is too long is cut. */
 static void name_frame(const ritz_interface_form *form, int64_t k,
                        char out[RITZ_NAME_SIZE])
 {
@@ -112,8 +112,8 @@ static ritz_status say_losses(const flexible_solid *s,
 {
     if (s->rigid_hz > RITZ_HELD * s->flexible_hz)
         RITZ_CHECK(ritz_export_say(
-            report, "warning: the body is held at the ground, and Simscape "
-                    "lets its solids move freely: import it without supports"));
+            report, "warning: the ground holds the body, and Simscape lets "
+                    "its solids move freely: import it without supports"));
     if (s->form.num_loose > 0)
         RITZ_CHECK(ritz_export_say(
             report,

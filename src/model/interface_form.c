@@ -58,8 +58,8 @@ static bool has_motions(const ritz_port_map *port, int64_t first)
     return true;
 }
 
-/* Append the grids of a port that are not there yet, and their rows of T_b.
-   Rows of a port are its grids one after the other. */
+/* Append the grids of a port that the form does not have yet, and their rows of
+   T_b. The rows of a port are in the order of its grids. */
 static ritz_status add_port(const ritz_port_map *port,
                             ritz_interface_form *form, ritz_dense *T_b)
 {
@@ -86,7 +86,8 @@ static ritz_status add_port(const ritz_port_map *port,
     return RITZ_OK;
 }
 
-/* The next of some names with commas between them; *names is moved behind. */
+/* The port of the first of names with commas between them; *names is moved to
+   the next. */
 static const ritz_port_map *take_port(const ritz_reduced *reduced,
                                       const char **names)
 {
@@ -130,8 +131,8 @@ static ritz_status list_motions(const ritz_reduced *reduced, const char *ports,
     RITZ_CHECK(ritz_dense_new(most + RITZ_FRAME_MOTIONS, r, &T_b));
     RITZ_CHECK(add_ports(reduced, ports, form, &T_b));
     RITZ_REFUSE_IF(form->count == 0, RITZ_ERR_ARGUMENT,
-                   "no port is there by which others could hold it: import "
-                   "with --port");
+                   "the component has no port by which others could hold it: "
+                   "import with --port");
     RITZ_REFUSE_IF(RITZ_FRAME_MOTIONS * form->count > r, RITZ_ERR_ARGUMENT,
                    "%lld coordinates cannot hold the six motions of %lld grids",
                    (long long)r, (long long)form->count);
@@ -269,7 +270,7 @@ static ritz_status make_columns(const ritz_structure *model,
     RITZ_CHECK_NEW(form->hertz, N.ncol);
     if (N.ncol > 0) {
         RITZ_CHECK(find_held_modes(model, &N, &pairs));
-        /* twice, as what is left of the first time is its rounding */
+        /* the second time removes what rounding left of the first */
         RITZ_CHECK(relax(model, &N, &pairs, &X));
         RITZ_CHECK(relax(model, &N, &pairs, &X));
     }
@@ -304,7 +305,7 @@ ritz_status ritz_interface_form_of(const ritz_reduced *reduced,
 
 /* ---- rigid motion -------------------------------------------------------- */
 
-/* Rigid motions about the basic origin, of modes none. */
+/* Rigid motions about the basic origin, in which modes are zero. */
 static ritz_status move_rigidly(const ritz_interface_form *form,
                                 ritz_dense *out)
 {

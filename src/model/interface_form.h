@@ -6,8 +6,8 @@
  *
  * x the six motions, along basic axes, of each grid of some ports, and eta the
  * modes of the body whose interface is held. With T_b the rows of these
- * motions, T_b q = x, and N a basis of its null space, mode shapes and static
- * modes are
+ * motions, T_b q = x, and N a basis of the null space of T_b, modes with the
+ * interface held and static responses to unit motions are
  *
  *     N'K N Y = N'M N Y diag(lambda),     N Y,
  *     V_x = (I - N Y diag(1/lambda) Y'N'K) T_b^+,
@@ -27,10 +27,11 @@ typedef struct ritz_interface_form {
     int64_t *grid;                /* k, in the order of the ports */
     double *position;             /* k x 3 */
     char (*port)[RITZ_NAME_SIZE]; /* k, of each grid */
-    bool kept;     /* x were coordinates before, perhaps turned: V only orders
-                        and turns them, and eta are columns of the basis */
+    bool kept;     /* x are coordinates of the basis already, perhaps turned: V
+                        only orders and turns them, and eta are as they were */
     double *hertz; /* r - 6k, of the modes; NULL: kept */
-    int64_t num_loose; /* modes without stiffness, as of a hinge, the first */
+    int64_t num_loose; /* modes without stiffness, as of a hinge; they are the
+                          first */
     ritz_dense V;      /* r x r */
     ritz_dense K, M;   /* r x r */
     ritz_dense D;      /* r x r, that of stated damping included; {0}: none */
@@ -48,11 +49,11 @@ ritz_status ritz_interface_form_of(const ritz_reduced *reduced,
                                    const char *ports, ritz_interface_form *out);
 
 /**
- * How freely the body moves as a rigid one: sqrt of r'K r / r'M r of the six
- * rigid motions r that the interface makes, the largest, and the first flexible
- * frequency to compare with.
+ * Whether the ground holds the body: the largest sqrt(r'K r / r'M r) of the six
+ * rigid motions r of the interface, and the first flexible frequency, with
+ * which it is to be compared.
  *
- * @param[out] rigid_hz     rounding where the body is free  [Hz]
+ * @param[out] rigid_hz     0 but for rounding where the body is free  [Hz]
  * @param[out] flexible_hz  0 if no mode is flexible  [Hz]
  */
 ritz_status ritz_interface_form_held(const ritz_interface_form *form,

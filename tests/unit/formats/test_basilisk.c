@@ -124,7 +124,7 @@ static void assert_numbers(const char *from, const char *word, int count,
                     64.0 * DBL_EPSILON * fmax(1.0, fabs(expected[k])));
 }
 
-static void modes_become_springs_and_bodies_that_turn(void **state)
+static void modes_become_springs_and_spinning_bodies(void **state)
 {
     const double place[3] = {2, 0, 0}, up[3] = {0, 0, 1}, ahead[3] = {1, 0, 0};
     const double three = 3.0, two = 2.0;
@@ -155,8 +155,8 @@ static void modes_become_springs_and_bodies_that_turn(void **state)
                                            "not act on the hub"));
 }
 
-/* 17 are left, 6 less moment about the grid, and of 30 about it: 2 of the body
-   that turns, 12 of the mass at x = 2 about y and z. */
+/* Of the mass of 20 the spring takes 3 at x = 2; of the inertia of 30 about the
+   grid the spinning body takes 2 about x, and the spring 12 about y and z. */
 static void the_hub_keeps_the_rest(void **state)
 {
     const double mass = 17.0, centre[3] = {-6.0 / 17.0, 0, 0};
@@ -198,16 +198,32 @@ static void a_hub_without_mass_or_inertia_is_refused(void **state)
     couple_third(body, sqrt(3.0), 0.0);
     M[0] = M[ORDER + 1] = M[2 * ORDER + 2] = 4.0;
     M[4 * ORDER + 4] = 60.0;
-    assert_refused(body, "the modes take more mass than the component has, -2 "
-                         "are left of the hub");
+    assert_refused(body, "the effectors have more mass than the component, and "
+                         "leave the hub -2");
     M[0] = M[ORDER + 1] = M[2 * ORDER + 2] = 20.0;
     M[4 * ORDER + 4] = 30.0;
     couple_third(body, 0.5, 0.5);
     /* the mass at x = 2 takes 12 about z, where it does not move */
     M[5 * ORDER + 5] = 12.0;
-    assert_refused(body, "the hub that is left has a moment of inertia of "
+    assert_refused(body, "the effectors leave the hub a moment of inertia of "
                          "-2.11765");
     M[5 * ORDER + 5] = 30.0;
+}
+
+static void modes_of_which_none_fits_are_refused(void **state)
+{
+    ritz_reduced *body = *state;
+    ritz_dense M = {0};
+
+    assert_ok(ritz_dense_copy(&body->M, &M));
+    for (int64_t k = 6; k < 8; k++) /* the spring and the spinning body */
+        for (int64_t i = 0; i < 6; i++)
+            ritz_dense_col(&body->M, k)[i] = ritz_dense_col(&body->M, i)[k] =
+                0.0;
+    assert_refused(body, "of 4 modes none is a mass on a spring or a spinning "
+                         "body, and without effectors the hub is rigid");
+    ritz_dense_free(&body->M);
+    body->M = M;
 }
 
 static void other_bodies_are_refused(void **state)
@@ -236,9 +252,10 @@ static void no_allocation_failure_leaks(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(modes_become_springs_and_bodies_that_turn),
+    cmocka_unit_test(modes_become_springs_and_spinning_bodies),
     cmocka_unit_test(the_hub_keeps_the_rest),
     cmocka_unit_test(a_hub_without_mass_or_inertia_is_refused),
+    cmocka_unit_test(modes_of_which_none_fits_are_refused),
     cmocka_unit_test(other_bodies_are_refused),
     cmocka_unit_test(no_allocation_failure_leaks),
 };

@@ -165,7 +165,7 @@ static void supports_are_fixed(void **state)
     assert_null(deck.imposed);
     assert_ok(parse_with("D,ALL,UY,0\nD,1,UX,1e-3\n", &moved));
     assert_int_equal(moved.num_fixed, 10);
-    assert_non_null(strstr(moved.imposed, "'a.cdb', line 22: 'D' moves"));
+    assert_non_null(strstr(moved.imposed, "'a.cdb', line 22: 'D' imposes"));
 }
 
 static void constraints_are_listed(void **state)
@@ -192,10 +192,11 @@ static void what_is_wrong_is_named_with_its_line(void **state)
         {"NBLOCK,6,SOLID\n    1\n", "line 22: 'NBLOCK' is not followed by a "
                                     "format such as '(3i9,6e21.13e3)'"},
         {"EBLOCK,19,SOLID\n(3i9,6e21.13e3)\n", "such as '(19i9)'"},
-        {"NBLOCK,3\n(1i5,3e9.2)\n    x\n", "line 23: 'x' is no whole number"},
-        {"NBLOCK,3\n(1i5,3e9.2)\n    1 1.0x\n", "'1.0x' is no number"},
-        {"NBLOCK,3\n(1i5,3e9.2)\n    1  1.E999\n", "'1.E999' is no number"},
-        {"NBLOCK,3\n(1i5,3e9.2)\n    0\n", "0 is no number of a node"},
+        {"NBLOCK,3\n(1i5,3e9.2)\n    x\n",
+         "line 23: 'x' is not a whole number"},
+        {"NBLOCK,3\n(1i5,3e9.2)\n    1 1.0x\n", "'1.0x' is not a number"},
+        {"NBLOCK,3\n(1i5,3e9.2)\n    1  1.E999\n", "'1.E999' is not a number"},
+        {"NBLOCK,3\n(1i5,3e9.2)\n    0\n", "0 is not a node number"},
         {"NBLOCK,3\n(1i5,3e9.2)\n    1\n", "'NBLOCK' has no end"},
         {"EBLOCK,19,SOLID\n(19i4)\n   1   1\n", "an element has 2 fields"},
         {"EBLOCK,19,SOLID\n(19i4)\n   1   1   1   1   0   0   0   0  99   0"
@@ -206,15 +207,16 @@ static void what_is_wrong_is_named_with_its_line(void **state)
          "nodes of this element are missing"},
         {"EBLOCK,19,SOLID\n(19i4)\n   1   1   1   1   0   0   0   0   1   0"
          "   1  -5\n",
-         "-5 is no number of a node"},
+         "-5 is not a node number"},
         {"EBLOCK,19,SOLID\n(19i4)\n", "'EBLOCK' has no end"},
-        {"D,77,UX,0\n", "'D' holds node 77, which is not there"},
-        {"D,P51X,UX,0\n", "'P51X' of 'D' is no whole number"},
-        {"ET,x,185\n", "'x' of 'ET' is no whole number"},
+        {"D,77,UX,0\n", "'D' holds node 77, which does not exist"},
+        {"D,P51X,UX,0\n", "'P51X' of 'D' is not a whole number"},
+        {"ET,x,185\n", "'x' of 'ET' is not a whole number"},
         {"N,R5.3,ANG,5,90\n", "angles of node 5 do not follow its position"},
-        {"CSYS,11\nN,30,1,0,0\n", "'N' after CSYS is not read"},
-        {"*DO,I,1,9\n", "line 21: '*DO' changes the model by what Ritz does "
-                        "not evaluate: write it by CDWRITE"},
+        {"CSYS,11\nN,30,1,0,0\n",
+         "'N' after CSYS, along other axes, is not read"},
+        {"*DO,I,1,9\n", "line 21: '*DO' changes the model, and Ritz does not "
+                        "evaluate it: let ANSYS write the model by CDWRITE"},
         {"ngen,2,10,1,8\n", "'NGEN' changes the model"},
         {"/INPUT,more,inp\n", "'/INPUT' changes the model"},
     };
