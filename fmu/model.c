@@ -192,11 +192,23 @@ static bool fill_model(const unsigned char *bytes, size_t size, fmu_model *m,
     return check_numbers(m, count, why);
 }
 
+bool fmu_model_parse(const unsigned char *bytes, size_t size, fmu_model *out,
+                     char why[FMU_MESSAGE_SIZE])
+{
+    fmu_model m = {0};
+
+    if (!fill_model(bytes, size, &m, why)) {
+        fmu_model_free(&m);
+        return false;
+    }
+    *out = m;
+    return true;
+}
+
 bool fmu_model_read(const char *path, fmu_model *out,
                     char why[FMU_MESSAGE_SIZE])
 {
     FILE *file = fopen(path, "rb");
-    fmu_model m = {0};
     unsigned char *bytes = NULL;
     size_t size = 0;
     bool whole = false;
@@ -207,14 +219,9 @@ bool fmu_model_read(const char *path, fmu_model *out,
     (void)fclose(file);
     if (!bytes)
         return refuse(why, "it cannot be read");
-    whole = fill_model(bytes, size, &m, why);
+    whole = fmu_model_parse(bytes, size, out, why);
     free(bytes);
-    if (!whole) {
-        fmu_model_free(&m);
-        return false;
-    }
-    *out = m;
-    return true;
+    return whole;
 }
 
 void fmu_model_free(fmu_model *model)

@@ -45,6 +45,10 @@ typedef struct fmu_model {
  */
 bool fmu_model_read(const char *path, fmu_model *out,
                     char why[FMU_MESSAGE_SIZE]);
+
+/** The same of the bytes of a file. */
+bool fmu_model_parse(const unsigned char *bytes, size_t size, fmu_model *out,
+                     char why[FMU_MESSAGE_SIZE]);
 void fmu_model_free(fmu_model *model);
 
 /** dx = A x + B u */

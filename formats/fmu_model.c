@@ -198,7 +198,7 @@ static ritz_status find_range(const ritz_export_object *object,
 
     if (object->states)
         RITZ_CHECK(ritz_state_space_poles(object->states, &count, &pole));
-    range[0] = INFINITY;
+    range[0] = (double)INFINITY;
     range[1] = 0.0;
     for (int64_t k = 0; k < count; k++)
         range[1] = fmax(range[1], frequency_of(m, pole, k));

@@ -516,6 +516,21 @@ MAT_HDF5 = {f"{name}-{k}": bytes([k]) + edits for k in range(5)
     "attribute": b"\x02\x01\x00\x01\x09\x00\x01\x0a", "absent": b"\x03\x03",
 }.items()}
 
+# --- FMUs: the fuzzer mends the checksum ------------------------------------------
+
+def fmu_numbers(sizes, states, numbers):
+    return b"RITZFMU1" + bytes(8) + b"0" * 64 + struct.pack(
+        f"<4q{len(sizes)}q{len(numbers)}d", 1, 1, states, len(sizes), *sizes,
+        *numbers)
+
+
+FMU = {
+    "oscillator": fmu_numbers([0], 2, [4, 0.1, 0, 1, 1, 0, 0, 1, 1]),
+    "dense": fmu_numbers([2], 2, [0, -4, 1, -0.1, 0, 1, 1, 0, 0, 1, 1]),
+    "both": fmu_numbers([1, 0], 3, [-1, 9, 0, 2, 0, 1, 1, 1, 1, 0.5, 1, 1, 1]),
+    "empty": fmu_numbers([], 0, [3]),
+}
+
 CORPUS = {
     "output4": {"dense": OUTPUT4, "sparse": OUTPUT4_SPARSE, "big": OUTPUT4_BIG,
                 "two": OUTPUT4 + OUTPUT4_BIG, "binary": output4_binary(),
@@ -527,7 +542,7 @@ CORPUS = {
     "matrices": {**FOREIGN, **MARKET, **COORDINATES, **DMIG, **BOEING,
                  "output4": OUTPUT4, "matrix-input": MATRIX_INPUT["named"],
                  "user-element": USER_ELEMENT["abaqus"]},
-    "deck": DECK, "import": IMPORT, "state-space": STATE_SPACE,
+    "deck": DECK, "fmu": FMU, "import": IMPORT, "state-space": STATE_SPACE,
     "container": CONTAINER, "scene": SCENE, "signal": SIGNAL, "texts": TEXTS,
     "claims": CLAIMS, "records": RECORDS, "tracks": TRACKS,
     "commands": COMMANDS, "initial": INITIAL, "rank-tracks": RANK_TRACKS,

@@ -30,6 +30,7 @@ static const fuzz_target targets[] = {
     {"import", "options and files of ritz-import", fuzz_import},
     {"state-space", "the same of a state space", fuzz_state_space},
     {"container", "containers, sound HDF5 with any content", fuzz_container},
+    {"fmu", "resources of FMUs, and a step of them", fuzz_fmu},
     {"scene", "scenes, and settings of --at", fuzz_scene},
     {"signal", "signals of ritz-simulate, and their tables", fuzz_signal},
     {"texts", "values of options", fuzz_texts},

@@ -29,6 +29,7 @@ fuzz_run fuzz_import, fuzz_state_space;
 fuzz_run fuzz_scene, fuzz_signal, fuzz_texts;
 fuzz_run fuzz_claims, fuzz_records, fuzz_tracks;
 fuzz_run fuzz_container, fuzz_mat_hdf5;
+fuzz_run fuzz_fmu;
 fuzz_run fuzz_commands, fuzz_initial, fuzz_rank_tracks;
 
 /** Abort unless a reader that ended with @p status succeeded or left a
