@@ -65,6 +65,16 @@ static ritz_status read_installed(const char *folder, const char *name,
     return RITZ_OK;
 }
 
+/* By the head of an ELF file: its class, its order of bytes, its machine. */
+static bool is_for_x86_64(const unsigned char *bytes, int64_t size)
+{
+    static const unsigned char head[] = {0x7f, 'E', 'L', 'F', 2, 1};
+    enum { AT_MACHINE = 18, X86_64 = 62 };
+
+    return size > AT_MACHINE + 1 && memcmp(bytes, head, sizeof head) == 0 &&
+           bytes[AT_MACHINE] == X86_64 && bytes[AT_MACHINE + 1] == 0;
+}
+
 static ritz_status read_program(const ritz_export_request *request,
                                 fmu_texts *p)
 {
@@ -72,6 +82,10 @@ static ritz_status read_program(const ritz_export_request *request,
                    "no folder with the program of FMUs is given");
     RITZ_CHECK(read_installed(request->runtime, "ritz_fmu.so", &p->program,
                               &p->program_size));
+    RITZ_REFUSE_IF(!is_for_x86_64(p->program, p->program_size), RITZ_ERR_FILE,
+                   "'%s/ritz_fmu.so' is no program of Linux on x86_64, which "
+                   "is the only one that FMUs are written for",
+                   request->runtime);
     return read_installed(request->runtime, "ritz_fmu.txt", &p->licence,
                           &p->licence_size);
 }

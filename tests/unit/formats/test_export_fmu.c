@@ -3,6 +3,7 @@
  * description is compared with the text of the standard's examples, and the
  * numbers are put to use by the program that an importer loads.
  */
+#include "faults.h"
 #include "fmu_driver.h"
 #include "folder.h"
 #include "masses.h"
@@ -422,6 +423,10 @@ static void what_an_fmu_cannot_be_is_refused(void **state)
     request.runtime = folder_path("missing");
     assert_fails(ritz_exporter_fmu.write(&object, &request, &report),
                  RITZ_ERR_FILE, "which is installed with the tools");
+    request.runtime = folder_path(".");
+    (void)folder_write("ritz_fmu.so", "\177ELF of another machine");
+    assert_fails(ritz_exporter_fmu.write(&object, &request, &report),
+                 RITZ_ERR_FILE, "is no program of Linux on x86_64");
     assert_ok(ritz_dense_copy(&reduced.K, &reduced.K4));
     assert_fails(write_it(&reduced, 3, "none.fmu", &report), RITZ_ERR_ARGUMENT,
                  "structural damping is of harmonic motion alone");
@@ -481,6 +486,22 @@ static void exports_survive_every_failing_allocation(void **state)
     assert_survives_every_allocation(write_once(&reduced));
 }
 
+static ritz_status write_borrowed(const void *reduced)
+{
+    return write_once(reduced);
+}
+
+/* The archive is written by libarchive, whose calls fail as all others. */
+static void a_full_disk_leaves_no_file(void **state)
+{
+    RITZ_OWN(ritz_reduced) reduced = {0};
+
+    (void)state;
+    make_masses(NULL, false, &reduced);
+    assert_true(faults_try_each(write_borrowed, &reduced,
+                                folder_path("memory.fmu")) > 1);
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(held_inputs_move_it_as_ritz_simulate_does),
     cmocka_unit_test(a_state_space_moves_as_ritz_simulate_does),
@@ -493,6 +514,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(what_an_fmu_cannot_be_is_refused),
     cmocka_unit_test(a_model_may_have_inputs_or_outputs_alone),
     cmocka_unit_test(exports_survive_every_failing_allocation),
+    cmocka_unit_test(a_full_disk_leaves_no_file),
 };
 
 TEST_MODULE(export_fmu, tests, folder_make, folder_remove)
