@@ -194,6 +194,12 @@ DECK = {
              "SPOINT,11,12\nSPOINT,20,THRU,22\n"
              "SPC1,7,123,1\nSPC,7,2,4,0.0\nSPCADD,9,7\n"
              "ASET1,126,2,THRU,3\nQSET1,0,11,12\nENDDATA\n",
+    "external": "BEGIN SUPER      102\n"
+                "EXTRN          3  123456      11  123456\n"
+                "            1001       0    1002       0\n"
+                "EXTRN,20,THRU,22,2\nGRID,3\nGRID,11\nGRID,21\n"
+                "ASET1,123456,3,11\nQSET1,0,1001,THRU,1002\n"
+                "SPOINT      1001    THRU    1002\n",
     "constraints": "BEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\n"
                    "GRID,3,,0.,1.,0.\nGRID,4,,0.,0.,1.\n"
                    "RBE2,10,1,123456,2\n"
