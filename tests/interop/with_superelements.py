@@ -15,6 +15,7 @@ try:
     import h5py
     import numpy
     import pyNastran.op4.op4
+    import scipy.sparse
     from pyNastran.bdf.bdf import BDF
     from pyyeti import cb
     from pyyeti.nastran import bulk, op4
@@ -200,6 +201,7 @@ def check_hubs(tap, tools):
     lines = re.findall(r"^.*(?:Okay|CHECK!|PASS|FAIL).*$", said, re.M)
     tap.check(len(lines) > 4 and not re.search("CHECK!|FAIL|WARN|NOT", said),
               "hubs: pyYeti's cbcheck passes", f"{len(lines)} checks")
+    check_other_writer(tap, tools, found, uset[interface], place)
     # motions of the grids as they are written; entries of T'KT are sums over
     # the dofs of the block, and are multiplied by distances up to 3
     rigid = numpy.zeros((len(place), 6))
@@ -214,6 +216,26 @@ def check_hubs(tap, tools):
     tap.near(numpy.diag(mass)[:3], numpy.full(3, block.M.sum() / 3.0),
              3 * block.n * 2.3e-16,
              "hubs: the mass is that of the block")
+
+
+def check_other_writer(tap, tools, found, uset, place):
+    """pyYeti writes the same superelement, which is imported."""
+    bulk.wtextseout(tools.path("other"), se=7, bset=numpy.arange(12),
+                    uset=uset, spoint1=1001, kaa=found["KAA"],
+                    maa=found["MAA"], baa=found["MAA"] / 4.0)
+    said = tools("ritz-import", "--superelement", "other.op4", "-o",
+                 "other.h5")
+    with h5py.File(tools.path("other.h5")) as f:
+        dofs = list(zip(map(int, f["dofs/grid"]),
+                        map(int, f["dofs/component"])))
+        matrix = [scipy.sparse.csc_matrix(
+            (f[name]["data"][:], f[name]["indices"][:], f[name]["indptr"][:]),
+            f[name].attrs["shape"]).toarray() for name in "KMD"]
+    tap.check(dofs == place and "rows named by  EXTRN" in said,
+              "pyYeti's superelement: its rows are those of EXTRN")
+    tap.check(all((A == due).all() for A, due in zip(
+        matrix, [found["KAA"], found["MAA"], found["MAA"] / 4.0])),
+              "pyYeti's superelement: K, M and D are read to the bit")
 
 
 def check_page(tap, tools):
