@@ -477,6 +477,10 @@ COMMANDS = {
                       "1", "--input", "u=3:1,2:1*-0.5", "--output-at",
                       "y=3:1*2@1e-3", "--port", "tip=3:1", "--damper",
                       "strut=1:1,3:1*4*0.5", "--units", "N mm", "-oo", K=K),
+    "import-superelement": command(
+        "ritz-import", "--superelement", "K", "--port", "tip=7", "-oo",
+        K="BEGIN SUPER 5\nEXTRN,7,12,1001,0\nGRID,7\nSPOINT,1001\n"
+          + DMIG["small"] + "DMIG,MAAX,0,6,2\nDMIG,MAAX,7,1,,7,1,2.\n"),
     "info": command("ritz-info", "--json", "F", "--", "c.h5", F=OUTPUT4),
     "check": command("ritz-check", "r.h5", "--order=3"),
     "list": command("ritz-basis", "--list"),
