@@ -15,7 +15,7 @@
 #include <inttypes.h>
 #include <strings.h>
 
-enum { MOST_ROWS = 10000000 }; /* that THRU may stand for */
+enum { MOST_ROWS = 1000000 }; /* that THRU may stand for */
 
 ritz_status ritz_bulk_take_external(ritz_bulk_cards *all, const ritz_card *card,
                                     int32_t how)

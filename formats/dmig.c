@@ -35,7 +35,7 @@ enum {
     RITZ_DMIG_WIDE = 2,
     RITZ_DMIG_SYMMETRIC = 6,
     RITZ_DMIG_COLUMNS = 9,
-    MOST_COLUMNS = 10000000, /* that NCOL may state */
+    MOST_COLUMNS = 1000000, /* that NCOL may state */
 };
 
 /* A header card. */

@@ -73,7 +73,8 @@ static void what_names_no_rows_is_refused(void **state)
         {"EXTRN,-1,1\n", "'-1' in EXTRN is not a positive whole number"},
         {"EXTRN,5,THRU,4,1\n", "'4' in EXTRN is not at or above where THRU"},
         {"EXTRN,5,THRU\n", "a field of EXTRN is blank where a positive whole"},
-        {"EXTRN,1,THRU,99999999,1\n", "EXTRN stands for more than 10000000"},
+        {"EXTRN,1,THRU,99999999,1\n",
+         "EXTRN stands for more than 1000000 rows"},
     };
 
     (void)state;

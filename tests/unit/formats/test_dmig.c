@@ -174,7 +174,7 @@ static void what_is_no_matrix_is_refused(void **state)
         {"DMIG,K,0,6,7\n", "'7' in DMIG is not a type"},
         {"DMIG,K,0,6,2,0,2\n", "'2' in DMIG is not 0 or 1 for POLAR"},
         {"DMIG,K,0,9,2,0,,,-1\n", "'-1' in DMIG is not a number of columns"},
-        {"DMIG,K,0,9,2,0,,,10000001\n", "is not a number of columns"},
+        {"DMIG,K,0,9,2,0,,,1000001\n", "is not a number of columns"},
         {"DMIG,K,0,9,2,0,,,3\nDMIG,K,4,,,1,1,1.\n",
          "line 2: '4' in DMIG is not among the columns 1 to NCOL"},
         {"DMIG,1K,0,6,2\n", "'1K' in DMIG is not the name of a matrix"},
