@@ -68,7 +68,7 @@ static void put_origin(FILE *file, const certified *c)
 
 static void put_band(FILE *file, const certified *c)
 {
-    double lowest = INFINITY, highest = 0.0;
+    double lowest = HUGE_VAL, highest = 0.0;
 
     fprintf(file, "order: %" PRId64, c->order);
     for (int64_t k = 0; k < c->columns->count; k++) {
