@@ -78,7 +78,8 @@ static void a_certificate_has_errors_inputs_and_command(void **state)
     fill(&r);
     assert_ok(ritz_measures_add(&r.errors, "frequency-relative", 1.25e-3, 1e-2,
                                 "mode 7"));
-    assert_ok(ritz_measures_add(&r.estimates, "static-gain", 0.5, NAN, ""));
+    assert_ok(
+        ritz_measures_add(&r.estimates, "static-gain", 0.5, (double)NAN, ""));
     assert_ok(ritz_certificate(&object, &stamp, &got));
     second = strchr(got, '\n');
     assert_non_null(second);
