@@ -182,14 +182,15 @@ static bool find_cell(const ritz_cdb *all, const ritz_cdb_element *element,
                       const ritz_cdb_kind *kind, cdb_cell *out)
 {
     const ritz_cell_shape *shape = ritz_cell_shape_of(kind->cell);
-    const int64_t *n = all->joined + element->first;
     const int64_t corners = kind->cell == RITZ_CELL_LINE ? 2 : shape->corners;
+    const int64_t *n = NULL;
 
     *out = (cdb_cell){0};
     if (!kind->cell)
         return true;
     if (element->count < corners)
         return false;
+    n = all->joined + element->first;
     if (kind->cell == RITZ_CELL_LINE)
         pick_nodes(n, RITZ_CELL_LINE, 2, "AB", out);
     else if (element->count >= kind->size &&
