@@ -496,18 +496,27 @@ static uint8_t mask_of(ritz_piece label)
     return is_word(label, "ALL") ? 0x7e : 0;
 }
 
-/* D,NODE,LABEL,VALUE */
+/* D,NODE,LABEL,VALUE,VALUE2,LAST,STEP,LABEL,...: also of all nodes. */
 static ritz_status take_support(ritz_cdb *all, const cdb_command *command)
 {
+    enum { VALUE = 3, LAST = 5, LABELS = 7, MOST_LABELS = 5 };
+    const bool everywhere = is_word(field_of(command, 1), "ALL");
     ritz_cdb_support support = {.line = command->line};
     double value = 0.0;
 
     support.mask = mask_of(field_of(command, 2));
+    for (int64_t k = LABELS; k < LABELS + MOST_LABELS; k++)
+        support.mask |= mask_of(field_of(command, k));
     if (support.mask == 0)
         return RITZ_OK;
-    if (!is_word(field_of(command, 1), "ALL"))
+    if (field_of(command, LAST).length > 0 || (everywhere && all->chosen))
+        return ritz_cdb_refuse(all, command->line,
+                               "'D' holds nodes of a range or selection, which "
+                               "is not read: write the model by CDWRITE");
+    if (!everywhere)
         RITZ_CHECK(take_whole(all, command, 1, &support.node));
-    support.imposed = !is_real(field_of(command, 3), &value) || value != 0.0;
+    support.imposed =
+        !is_real(field_of(command, VALUE), &value) || value != 0.0;
     RITZ_CHECK_ROOM(all->support, all->num_supports, all->supports_room);
     all->support[all->num_supports++] = support;
     return RITZ_OK;
@@ -534,62 +543,104 @@ static ritz_status take_system(ritz_cdb *all, const cdb_command *command)
     return RITZ_OK;
 }
 
-/* A command, and what takes it; NULL: it is refused. */
+/* LOCAL and the like make the system that they define the active one. */
+static ritz_status turn_system(ritz_cdb *all, const cdb_command *command)
+{
+    (void)command;
+    all->turned = true;
+    return RITZ_OK;
+}
+
+/* NSEL,ALL and ALLSEL choose all nodes, other commands some of them. */
+static ritz_status choose_nodes(ritz_cdb *all, const cdb_command *command)
+{
+    const ritz_piece what = field_of(command, 1);
+    const bool whole = is_word(command->field[0], "ALLSEL");
+
+    all->chosen = is_word(command->field[0], "CMSEL") ||
+                  !(is_word(what, "ALL") || (whole && what.length == 0));
+    return RITZ_OK;
+}
+
+static ritz_status open_condition(ritz_cdb *all, const cdb_command *command)
+{
+    all->conditions += is_word(command->field[command->count - 1], "THEN");
+    return RITZ_OK;
+}
+
+static ritz_status close_condition(ritz_cdb *all, const cdb_command *command)
+{
+    (void)command;
+    all->conditions -= all->conditions > 0;
+    return RITZ_OK;
+}
+
+/* A command, and what takes it. */
 typedef struct cdb_verb {
     const char *name;
     ritz_status (*take)(ritz_cdb *all, const cdb_command *command);
+    bool adds; /* nodes, elements, supports or constraints */
 } cdb_verb;
 
 static const cdb_verb verbs[] = {
-    {"NBLOCK", take_nodes},
-    {"N", take_node},
-    {"EBLOCK", take_elements},
-    {"ET", take_type},
-    {"KEYOPT", take_option},
-    {"KEYOP", take_option},
-    {"TYPE", take_open_type},
-    {"EN", count_element},
-    {"E", count_element},
-    {"D", take_support},
-    {"CE", take_tie},
-    {"CP", take_tie},
-    {"CERIG", take_tie},
-    {"RBE3", take_tie},
-    {"CEINTF", take_tie},
-    {"CSYS", take_system},
-    {"NGEN", NULL},
-    {"EGEN", NULL},
-    {"NROTAT", NULL},
-    {"NMODIF", NULL},
-    {"NSYM", NULL},
-    {"ESYM", NULL},
-    {"NSCALE", NULL},
-    {"TRANSFER", NULL},
-    {"NUMMRG", NULL},
-    {"NUMCMP", NULL},
-    {"*DO", NULL},
-    {"*REPEAT", NULL},
-    {"*USE", NULL},
-    {"/INPUT", NULL},
-    {"CDREAD", NULL},
-    {"VMESH", NULL},
-    {"AMESH", NULL},
-    {"LMESH", NULL},
-    {"DDELE", NULL},
+    {"NBLOCK", take_nodes, true},
+    {"N", take_node, true},
+    {"EBLOCK", take_elements, true},
+    {"ET", take_type, false},
+    {"KEYOPT", take_option, false},
+    {"KEYOP", take_option, false},
+    {"TYPE", take_open_type, false},
+    {"EN", count_element, true},
+    {"E", count_element, true},
+    {"D", take_support, true},
+    {"CE", take_tie, true},
+    {"CP", take_tie, true},
+    {"CERIG", take_tie, true},
+    {"RBE3", take_tie, true},
+    {"CEINTF", take_tie, true},
+    {"CSYS", take_system, false},
+    {"LOCAL", turn_system, false},
+    {"CLOCAL", turn_system, false},
+    {"CS", turn_system, false},
+    {"CSKP", turn_system, false},
+    {"NSEL", choose_nodes, false},
+    {"CMSEL", choose_nodes, false},
+    {"NSLE", choose_nodes, false},
+    {"NSLA", choose_nodes, false},
+    {"NSLL", choose_nodes, false},
+    {"NSLK", choose_nodes, false},
+    {"ALLSEL", choose_nodes, false},
+    {"*IF", open_condition, false},
+    {"*ENDIF", close_condition, false},
 };
+
+/* Commands that are refused. */
+static const char *const strangers[] = {
+    "NGEN",    "FILL",     "NDELE",  "EDELE",  "EMODIF", "DSYM",    "*DOWHILE",
+    "*CREATE", "/EOF",     "EGEN",   "NROTAT", "NMODIF", "NSYM",    "ESYM",
+    "NSCALE",  "TRANSFER", "NUMMRG", "NUMCMP", "*DO",    "*REPEAT", "*USE",
+    "/INPUT",  "CDREAD",   "VMESH",  "AMESH",  "LMESH",  "DDELE"};
 
 static ritz_status take_command(ritz_cdb *all, const cdb_command *command)
 {
+    const ritz_piece name = command->field[0];
+
+    for (size_t k = 0; k < sizeof strangers / sizeof *strangers; k++)
+        if (is_word(name, strangers[k]))
+            return ritz_cdb_refuse(all, command->line,
+                                   "'%s' changes the model, and Ritz does not "
+                                   "evaluate it: let ANSYS write the model by "
+                                   "CDWRITE",
+                                   strangers[k]);
     for (size_t k = 0; k < sizeof verbs / sizeof *verbs; k++) {
-        if (!is_word(command->field[0], verbs[k].name))
+        if (!is_word(name, verbs[k].name))
             continue;
-        if (verbs[k].take)
-            return verbs[k].take(all, command);
-        return ritz_cdb_refuse(all, command->line,
-                               "'%s' changes the model, and Ritz does not "
-                               "evaluate it: let ANSYS write the model by "
-                               "CDWRITE",
-                               verbs[k].name);
+        if (verbs[k].adds && all->conditions > 0)
+            return ritz_cdb_refuse(all, command->line,
+                                   "'%s' stands behind '*IF', which is not "
+                                   "evaluated: write the model by CDWRITE",
+                                   verbs[k].name);
+        return verbs[k].take(all, command);
     }
     return RITZ_OK;
 }

@@ -72,6 +72,8 @@ typedef struct ritz_cdb {
     int64_t num_strange; /* elements that are not read */
     int64_t open_type;   /* set by TYPE, for EBLOCK without SOLID */
     bool turned;         /* CSYS: N is not along global axes */
+    bool chosen;         /* NSEL: ALL is some of the nodes */
+    int64_t conditions;  /* *IF ... THEN that are open */
 } ritz_cdb;
 
 /** The element of the library called @p text, "185" or "SOLID185"; NULL: it is

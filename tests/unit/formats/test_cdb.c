@@ -150,11 +150,25 @@ static void whole_cells_keep_their_nodes(void **state)
     assert_cell(&deck, 0, RITZ_CELL_HEXA20, 20, grid);
 }
 
-static void supports_are_fixed(void **state)
+static void elements_without_nodes_are_counted(void **state)
 {
-    RITZ_OWN(ritz_deck) deck = {0}, moved = {0};
+    RITZ_OWN(ritz_deck) deck = {0};
 
     (void)state;
+    assert_ok(
+        parse(HEAD "ET,1,185\nTYPE,1\nEBLOCK,10\n(15i3)\n  2\n -1\n", &deck));
+    assert_int_equal(deck.num_strange, 1);
+}
+
+static void supports_are_fixed(void **state)
+{
+    RITZ_OWN(ritz_deck) deck = {0}, moved = {0}, more = {0};
+
+    (void)state;
+    assert_ok(parse_with("NSEL,S,NODE,,1\nD,1,UX,0,,,,UY,ROTZ\nallsel\n"
+                         "CMSEL,S,A\nnsel,all\nD,ALL,UZ\n",
+                         &more));
+    assert_int_equal(more.num_fixed, 3 + more.grids.count);
     assert_ok(parse_with("D,1,UX,  0.00000000 , 0.0\nD,2,ALL\n"
                          "D,3,ROTZ,0\nD,1,TEMP,20\n",
                          &deck));
@@ -215,6 +229,15 @@ static void what_is_wrong_is_named_with_its_line(void **state)
         {"N,R5.3,ANG,5,90\n", "angles of node 5 do not follow its position"},
         {"CSYS,11\nN,30,1,0,0\n",
          "'N' after CSYS, along other axes, is not read"},
+        {"LOCAL,11,1\nN,30,1,90\n",
+         "'N' after CSYS, along other axes, is not read"},
+        {"CMSEL,S,A\nD,ALL,ALL\n", "'D' holds nodes of a range or selection"},
+        {"NSEL,S,NODE,,1\nD,all,UX\n", "nodes of a range or selection"},
+        {"D,1,UX,0,,3,1\n", "nodes of a range or selection"},
+        {"*IF,A,EQ,1,THEN\nN,30,1\n*ENDIF\n", "'N' stands behind '*IF'"},
+        {"FILL,1,2\n", "'FILL' changes the model"},
+        {"NDELE,1\n", "'NDELE' changes the model"},
+        {"DSYM,SYMM,X\n", "'DSYM' changes the model"},
         {"*DO,I,1,9\n", "line 21: '*DO' changes the model, and Ritz does not "
                         "evaluate it: let ANSYS write the model by CDWRITE"},
         {"ngen,2,10,1,8\n", "'NGEN' changes the model"},
@@ -280,6 +303,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(angles_follow_each_other),
     cmocka_unit_test(elements_become_cells),
     cmocka_unit_test(whole_cells_keep_their_nodes),
+    cmocka_unit_test(elements_without_nodes_are_counted),
     cmocka_unit_test(supports_are_fixed),
     cmocka_unit_test(constraints_are_listed),
     cmocka_unit_test(what_is_wrong_is_named_with_its_line),
