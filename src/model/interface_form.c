@@ -142,6 +142,24 @@ static ritz_status list_motions(const ritz_reduced *reduced, const char *ports,
 
 /* ---- constraint modes are there already --------------------------------- */
 
+/* Whether K_bm = 0: no column bends as the interface moves. Columns of rubin do,
+   and with them at rest the body resists a rigid motion of its interface. */
+static bool is_static(const ritz_reduced *reduced)
+{
+    const ritz_dense *K = &reduced->K;
+
+    for (int64_t j = 0; j < K->ncol; j++)
+        for (int64_t i = 0; i < K->nrow && !is_constraint(reduced, j); i++) {
+            const double own =
+                sqrt(fabs(ritz_dense_col(K, i)[i] * ritz_dense_col(K, j)[j]));
+
+            if (is_constraint(reduced, i) &&
+                fabs(ritz_dense_col(K, j)[i]) > RITZ_FOREIGN_INTERFACE * own)
+                return false;
+        }
+    return true;
+}
+
 /* Whether T_b = [P, 0] with P orthogonal, of constraint modes. */
 static ritz_status find_turned(const ritz_reduced *reduced,
                                const ritz_dense *T_b, bool *out)
@@ -155,7 +173,7 @@ static ritz_status find_turned(const ritz_reduced *reduced,
         if (!is_constraint(reduced, j) && ritz_dense_col_max(T_b, j) != 0.0)
             return RITZ_OK;
     }
-    if (constraints != T_b->nrow)
+    if (constraints != T_b->nrow || !is_static(reduced))
         return RITZ_OK;
     RITZ_CHECK(ritz_dense_mul_nt(T_b, T_b, &square));
     for (int64_t i = 0; i < square.nrow; i++)

@@ -27,7 +27,8 @@ typedef struct ritz_interface_form {
     int64_t *grid;                /* k, in the order of the ports */
     double *position;             /* k x 3 */
     char (*port)[RITZ_NAME_SIZE]; /* k, of each grid */
-    bool kept;     /* x are coordinates of the basis already, perhaps turned: V
+    bool kept;     /* x are coordinates of the basis already, perhaps turned,
+                        without stiffness that couples them to the others: V
                         only orders and turns them, and eta are as they were */
     double *hertz; /* r - 6k, of the modes; NULL: kept */
     int64_t num_loose; /* modes without stiffness, as of a hinge; they are the

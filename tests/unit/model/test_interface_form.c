@@ -151,6 +151,22 @@ static void a_free_basis_takes_the_form(void **state)
     assert_true(rigid <= 1e-6 * flexible);
 }
 
+/* Its columns bend as the attached dofs move: they are no modes of the held
+   body, and the stiffness of rigid motion is eps of the largest lambda. */
+static void columns_that_bend_with_the_interface_are_modes_after(void **state)
+{
+    RITZ_OWN(ritz_reduced) reduced = {0};
+    RITZ_OWN(ritz_interface_form) form = {0};
+    double rigid = 1.0, flexible = 0.0;
+
+    assert_ok(attach(*state, "g1,g4", &ritz_method_rubin, &reduced));
+    assert_ok(ritz_interface_form_of(&reduced, NULL, &form));
+    assert_false(form.kept);
+    assert_blocks(&form, 12);
+    assert_ok(ritz_interface_form_held(&form, &rigid, &flexible));
+    assert_true(rigid <= 1e-6 * flexible);
+}
+
 /* Twice the diagonal of K: springs of the ground as stiff as the body. */
 static void a_held_body_is_told(void **state)
 {
@@ -240,6 +256,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(constraint_modes_are_kept_bit_for_bit),
     cmocka_unit_test(the_full_space_gives_craig_bampton),
     cmocka_unit_test(a_free_basis_takes_the_form),
+    cmocka_unit_test(columns_that_bend_with_the_interface_are_modes_after),
     cmocka_unit_test(a_held_body_is_told),
     cmocka_unit_test(what_cannot_be_an_interface_is_refused),
     cmocka_unit_test(what_moves_while_it_is_held_has_no_stiffness),
