@@ -160,7 +160,9 @@ static bool is_rayleigh(fxbody *b)
 
             worst = fmax(worst, fabs(ritz_dense_col(D, j)[i] - fitted));
         }
-    if (worst <= RITZ_SAME * ritz_dense_max(D))
+    /* squares of large numbers are not finite, and fmax ignores NaN */
+    if (isfinite(b->alpha) && isfinite(b->beta) &&
+        worst <= RITZ_SAME * ritz_dense_max(D))
         return true;
     b->alpha = b->beta = 0.0;
     return false;

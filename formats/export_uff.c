@@ -346,12 +346,17 @@ static ritz_status print_sets(FILE *file, const void *what)
 
 /* ---- what it takes ------------------------------------------------------ */
 
+/* E13.5 has room for exponents of two digits [AllemangBrown1987] */
+static bool fits(double value)
+{
+    return fabs(value) < 9.99999e99;
+}
+
 static ritz_status check_reals(const ritz_shapes *s, const double *value,
                                const char *what)
 {
-    /* E13.5 has room for exponents of two digits [AllemangBrown1987] */
     for (int64_t i = 0; i < 3 * s->num_points; i++)
-        RITZ_REFUSE_IF(!(fabs(value[i]) < 9.99999e99), RITZ_ERR_ARGUMENT,
+        RITZ_REFUSE_IF(!fits(value[i]), RITZ_ERR_ARGUMENT,
                        "%s of grid %" PRId64 " is %g: the file has room for "
                        "exponents of two digits",
                        what, s->id[i / 3], value[i]);
@@ -373,6 +378,11 @@ static ritz_status check_shapes(const ritz_shapes *s)
         RITZ_REFUSE_IF(s->mode[j].hertz < 0.0, RITZ_ERR_ARGUMENT,
                        "'%s' does not oscillate: leave it out by --modes",
                        s->name[j]);
+        RITZ_REFUSE_IF(!fits(s->mode[j].hertz) || !fits(s->mode[j].ratio),
+                       RITZ_ERR_ARGUMENT,
+                       "'%s' is at %g Hz with a damping ratio of %g: the file "
+                       "has room for exponents of two digits",
+                       s->name[j], s->mode[j].hertz, s->mode[j].ratio);
         RITZ_CHECK(check_reals(s, ritz_dense_col(&s->u, j), "a motion"));
         if (s->turn.val)
             RITZ_CHECK(

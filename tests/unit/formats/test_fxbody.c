@@ -531,7 +531,7 @@ static void damping_is_that_of_rayleigh(void **state)
     const moving_body *of = *state;
     const char *path = folder_path("damped.fxb");
     ritz_reduced other = of->reduced; /* borrowed */
-    RITZ_OWN(ritz_export_report) report = {0}, warned = {0};
+    RITZ_OWN(ritz_export_report) report = {0}, warned = {0}, large = {0};
     RITZ_OWN(fx_file) f = {0}, bare = {0};
 
     assert_ok(write_body(&of->reduced, path, NULL, NULL, &report));
@@ -546,6 +546,9 @@ static void damping_is_that_of_rayleigh(void **state)
     read_file(path, &bare);
     assert_int_equal(bare.Idamp, 0);
     assert_true(says(&warned, "warning: damping is not alpha M + beta K"));
+    snprintf(other.damping, sizeof other.damping, "rayleigh 0 1e303");
+    assert_ok(write_body(&other, path, NULL, NULL, &large));
+    assert_true(says(&large, "warning: damping is not alpha M + beta K"));
 }
 
 static void assert_refused(const ritz_reduced *reduced, const char *reference,

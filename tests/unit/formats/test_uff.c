@@ -11,6 +11,7 @@
 #include <ritz/export.h>
 
 #include <stdio.h>
+#include <math.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -388,6 +389,10 @@ static void what_the_format_cannot_say_is_refused(void **state)
     assert_fails(write_modes(&s, path, NULL, &report), RITZ_ERR_ARGUMENT,
                  "does not oscillate: leave it out by --modes");
     s.mode[0].hertz = 1.0;
+    s.mode[0].ratio = (double)INFINITY;
+    assert_fails(write_modes(&s, path, NULL, &report), RITZ_ERR_ARGUMENT,
+                 "at 1 Hz with a damping ratio of inf: the file has room");
+    s.mode[0].ratio = 0.0;
     s.id[3] = 2147483648;
     assert_fails(write_modes(&s, path, NULL, &report), RITZ_ERR_ARGUMENT,
                  "grid 2147483648 has no label");
