@@ -236,16 +236,16 @@ static ritz_status say_blocks(const ritz_fmu *fmu, ritz_export_report *report)
                 largest > fmu->block[k].nrow ? largest : fmu->block[k].nrow;
         }
     RITZ_CHECK(ritz_export_say(report,
-                               "%" PRId64 " inputs, %" PRId64
-                               " outputs, %" PRId64 " states: %" PRId64
-                               " modes alone",
+                               "inputs: %" PRId64 ", outputs: %" PRId64
+                               ", states: %" PRId64 ", of %" PRId64
+                               " uncoupled modes",
                                fmu->num_inputs, fmu->num_outputs,
                                fmu->num_states, fmu->num_blocks - dense));
     if (dense > 0)
         RITZ_CHECK(ritz_export_say(report,
                                    "%" PRId64
-                                   " groups of coupled states, of up "
-                                   "to %" PRId64,
+                                   " groups of coupled states, the largest "
+                                   "of %" PRId64,
                                    dense, largest));
     return RITZ_OK;
 }
@@ -269,8 +269,8 @@ static ritz_status say_ports(const ritz_fmu *fmu, ritz_export_report *report)
                                    "not known",
                                    fmu->num_without_unit));
     return ritz_export_say(
-        report, "left out: shapes, ports, mass properties, limits of "
-                "outputs; nothing of the numbers");
+        report, "numbers keep every bit; left out: shapes, ports, mass "
+                "properties, limits of outputs");
 }
 
 static ritz_status write_fmu(const ritz_export_object *object,

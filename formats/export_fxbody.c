@@ -370,8 +370,9 @@ static ritz_status say_losses(const fxbody *b, bool fits,
     else
         RITZ_CHECK(ritz_export_say(
             report,
-            "the main node of /FXBODY is to be at (%.9g, %.9g, %.9g); its "
-            "stiffness coupling is zero, which constraints take",
+            "the main node of /FXBODY is to be at (%.9g, %.9g, %.9g); the "
+            "couplings of stiffness are zero, as constraints of the frame "
+            "take these forces",
             o[0], o[1], o[2]));
     if (!fits)
         RITZ_CHECK(ritz_export_say(

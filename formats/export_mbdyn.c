@@ -169,8 +169,8 @@ static ritz_status say_points(const ritz_point_masses *points,
 {
     RITZ_CHECK(ritz_export_say(report,
                                "nodes %s1 to %s%" PRId64
-                               " are no grids: their masses give MBDyn the "
-                               "inertia of the body and of its modes",
+                               " are not grids of the deck: their masses give "
+                               "MBDyn the inertia of the body and of its modes",
                                point_label, point_label, points->count));
     if (points->num_negative > 0)
         RITZ_CHECK(ritz_export_say(
@@ -193,8 +193,8 @@ static ritz_status say_rotations(const ritz_floating *body,
         return RITZ_OK;
     return ritz_export_say(
         report,
-        "%" PRId64 " of %" PRId64 " grids have no rotations: an interface node "
-        "there turns with the frame, as if the body were rigid",
+        "%" PRId64 " of %" PRId64 " grids without rotations: an interface "
+        "node there turns with the frame, as if the body were rigid",
         without, body->count);
 }
 

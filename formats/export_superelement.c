@@ -467,7 +467,7 @@ static ritz_status say_outputs(const external_element *e,
                                    e->outputs.count));
     RITZ_CHECK(ritz_nastran_rows_say_ports(
         &e->rows, e->reduced,
-        "was not attached: of it there are displacements alone", report));
+        "was not attached: the files hold its displacements only", report));
     return ritz_export_say(report, "left out, as a superelement has no place "
                                    "for them: inputs and outputs, inertia, "
                                    "other shapes");

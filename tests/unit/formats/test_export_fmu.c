@@ -192,9 +192,9 @@ static void assert_same_motion(const char *name, int fmi, ritz_model model)
 static void held_inputs_move_it_as_ritz_simulate_does(void **state)
 {
     const double coupled[MASSES] = {3.0, 0.0, 1.0};
-    const char *blocks[3] = {"6 states: 3 modes alone",
-                             "6 states: 3 modes alone",
-                             "6 states: 0 modes alone"};
+    const char *blocks[3] = {"states: 6, of 3 uncoupled modes",
+                             "states: 6, of 3 uncoupled modes",
+                             "states: 6, of 0 uncoupled modes"};
 
     (void)state;
     for (int kind = 0; kind < 3; kind++)

@@ -602,13 +602,13 @@ static void what_is_lost_is_said(void **state)
     ritz_reduced other = s->masses; /* borrowed */
 
     assert_ok(write_model(&s->chain, (ritz_export_request){0}, &chain));
-    assert_true(says(&chain, "are no grids"));
+    assert_true(says(&chain, "are not grids"));
     assert_true(says(&chain, "'damping from file'"));
     assert_true(says(&chain, "inputs, outputs, ports and units are left out"));
-    assert_false(says(&chain, "have no rotations"));
+    assert_false(says(&chain, "grids without rotations"));
     assert_ok(write_model(&s->masses, (ritz_export_request){0}, &masses));
-    assert_true(says(&masses, "nodes inertia1 to inertia4 are no grids"));
-    assert_true(says(&masses, "4 of 4 grids have no rotations"));
+    assert_true(says(&masses, "nodes inertia1 to inertia4 are not grids"));
+    assert_true(says(&masses, "4 of 4 grids without rotations"));
     assert_false(says(&masses, "negative"));
     assert_false(says(&masses, "'damping from file'"));
     assert_ok(write_model(&s->discs, (ritz_export_request){0}, &discs));
