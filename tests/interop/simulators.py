@@ -209,14 +209,13 @@ def follow(heading, text):
 
 
 def check_table(head):
-    """The table has a row for each exporter of models."""
+    """The table has a row for each exporter of models, and no other."""
     listed = {line.split()[0] for line in run(
         ["ritz-export", "--list"], ".")[1].splitlines()
         if line.split()[1:2] == ["reduced"]} - OWN
-    rows = {name for row in re.findall(r"^\| (`[^|]+) \|", head, re.M)
-            for name in re.findall(r"`([^`]+)`", row)}
-    check(listed <= rows, "the table names every exporter of models",
-          " ".join(sorted(listed - rows)))
+    rows = set(re.findall(r"^\| `(\w[^`]*)` \|", head, re.M))
+    check(listed == rows, "the table has the exporters of models",
+          " ".join(sorted(listed ^ rows)))
 
 
 def main():
