@@ -2,6 +2,7 @@
 #include "base/alloc.h"
 #include "base/search.h"
 #include "base/tolerances.h"
+#include "base/vector.h"
 #include "formats/bulk.h"
 
 #include <inttypes.h>
@@ -22,14 +23,6 @@
  * coordinates grow. Where these are not defined, on the z axis of either, they
  * are the frame's own axes x, y, z, which is what the public NASTRAN does.
  */
-
-static void cross_product(const double a[static 3], const double b[static 3],
-                          double out[static 3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
 
 static double length_of(const double a[static 3])
 {
@@ -161,7 +154,7 @@ static ritz_status orient_frame(const ritz_bulk_cards *all,
     z = length_of(e_z);
     if (z > 0.0)
         divide_vector(e_z, z);
-    cross_product(e_z, to_C, e_y);
+    ritz_cross(e_z, to_C, e_y);
     y = length_of(e_y);
     if (!(z > 0.0 && y > RITZ_HALF_DIGITS * length_of(to_C) && isfinite(z) &&
           isfinite(y)))
@@ -170,7 +163,7 @@ static ritz_status orient_frame(const ritz_bulk_cards *all,
                                  "%" PRId64 " lie on a line",
                                  frame->id);
     divide_vector(e_y, y);
-    cross_product(e_y, e_z, e_x);
+    ritz_cross(e_y, e_z, e_x);
     return RITZ_OK;
 }
 

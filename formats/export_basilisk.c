@@ -19,6 +19,7 @@
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "base/vector.h"
 #include "formats/certificate.h"
 #include "formats/sink.h"
 #include "linear/general.h"
@@ -66,19 +67,6 @@ static void spacecraft_free(spacecraft *s)
     RITZ_FREE(s->effector, s->certificate);
 }
 
-static double dot(const double a[static 3], const double b[static 3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[static 3], const double b[static 3],
-                  double out[static 3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 /* ---- modes --------------------------------------------------------------- */
 
 /* Modes Y while the grid is held, of K and M behind the six motions. */
@@ -95,7 +83,7 @@ static ritz_status find_modes(const ritz_interface_form *form,
 
 static fit choose_fit(const effector *e, const rigid_part *whole)
 {
-    const double p = sqrt(dot(e->p, e->p)), h = sqrt(dot(e->h, e->h));
+    const double p = sqrt(ritz_dot(e->p, e->p)), h = sqrt(ritz_dot(e->h, e->h));
     const double trace = whole->second[0] + whole->second[4] + whole->second[8];
     const bool moves = p > RITZ_NO_PARTICIPATION * sqrt(whole->mass);
     const bool turns = h > RITZ_NO_PARTICIPATION * sqrt(trace);
@@ -128,8 +116,8 @@ static ritz_status list_effectors(const rigid_part *whole, spacecraft *s)
         e->rate = rate.val ? ritz_dense_col(&rate, k)[k] : 0.0;
         memcpy(e->p, ritz_dense_col(&part, k), sizeof e->p);
         memcpy(e->h, ritz_dense_col(&part, k) + 3, sizeof e->h);
-        size = sqrt(dot(e->p, e->p) * dot(e->h, e->h));
-        e->skew = size > 0.0 ? fabs(dot(e->h, e->p)) / size : 0.0;
+        size = sqrt(ritz_dot(e->p, e->p) * ritz_dot(e->h, e->h));
+        e->skew = size > 0.0 ? fabs(ritz_dot(e->h, e->p)) / size : 0.0;
         e->kind = choose_fit(e, whole);
     }
     return RITZ_OK;
@@ -138,9 +126,9 @@ static ritz_status list_effectors(const rigid_part *whole, spacecraft *s)
 /* The mass on the spring, and its place. */
 static double place_mass(const effector *e, double out[static 3])
 {
-    const double mass = dot(e->p, e->p);
+    const double mass = ritz_dot(e->p, e->p);
 
-    cross(e->p, e->h, out);
+    ritz_cross(e->p, e->h, out);
     for (int i = 0; i < 3; i++)
         out[i] /= mass;
     return mass;
@@ -156,7 +144,7 @@ static void read_whole(const ritz_dense *M, rigid_part *out)
 
     ritz_inertia_read(M, &inertia);
     out->mass = inertia.mass;
-    square = dot(inertia.centre, inertia.centre);
+    square = ritz_dot(inertia.centre, inertia.centre);
     for (int i = 0; i < 3; i++) {
         out->first[i] = inertia.mass * inertia.centre[i];
         for (int j = 0; j < 3; j++)
@@ -173,7 +161,7 @@ static void take_away(const effector *e, rigid_part *hub)
 
     if (e->kind == FIT_SPRING) {
         mass = place_mass(e, r);
-        square = dot(r, r);
+        square = ritz_dot(r, r);
         hub->mass -= mass;
         for (int i = 0; i < 3; i++)
             hub->first[i] -= mass * r[i];
@@ -201,7 +189,7 @@ static ritz_status settle_hub(spacecraft *s)
                    hub->mass);
     for (int i = 0; i < 3; i++)
         s->centre[i] = hub->first[i] / hub->mass;
-    square = dot(s->centre, s->centre);
+    square = ritz_dot(s->centre, s->centre);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             s->tensor[3 * i + j] = hub->second[3 * i + j] -
@@ -314,7 +302,7 @@ static void put_spring(FILE *file, const effector *e)
 static void put_spinner(FILE *file, const effector *e)
 {
     const double omega = 2.0 * M_PI * e->hertz;
-    const double inertia = dot(e->h, e->h);
+    const double inertia = ritz_dot(e->h, e->h);
     double axis[3];
 
     for (int i = 0; i < 3; i++)
@@ -424,12 +412,12 @@ static ritz_status say_mode(const effector *e, int64_t k,
         return ritz_export_say(report,
                                "mode %" PRId64 ", %.6g Hz: a mass of %.6g on a "
                                "spring",
-                               k + 1, e->hertz, dot(e->p, e->p));
+                               k + 1, e->hertz, ritz_dot(e->p, e->p));
     case FIT_SPINNER:
         return ritz_export_say(report,
                                "mode %" PRId64 ", %.6g Hz: a spinning body of "
                                "inertia %.6g",
-                               k + 1, e->hertz, dot(e->h, e->h));
+                               k + 1, e->hertz, ritz_dot(e->h, e->h));
     case FIT_NONE:
         return ritz_export_say(report,
                                "warning: mode %" PRId64 ", %.6g Hz, is left "

@@ -133,12 +133,6 @@ void ritz_turn_apply(const double R[static 9], const double x[static 3],
 void ritz_turn_back(const double R[static 9], const double x[static 3],
                     double y[static 3]);
 
-/** c = a x b. */
-void ritz_cross(const double a[static 3], const double b[static 3],
-                double c[static 3]);
-
-double ritz_dot(const double a[static 3], const double b[static 3]);
-
 /**
  * The neighbours of component @p k of a scene at its first configuration, by
  * all its joints; the other components are read for it.

@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "base/vector.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -52,22 +53,6 @@ void ritz_turn_back(const double R[static 9], const double x[static 3],
 {
     for (int64_t i = 0; i < 3; i++)
         y[i] = R[i] * x[0] + R[3 + i] * x[1] + R[6 + i] * x[2];
-}
-
-void ritz_cross(const double a[static 3], const double b[static 3],
-                double c[static 3])
-{
-    for (int i = 0; i < 3; i++) {
-        int j = (i + 1) % 3;
-        int k = (i + 2) % 3;
-
-        c[i] = a[j] * b[k] - a[k] * b[j];
-    }
-}
-
-double ritz_dot(const double a[static 3], const double b[static 3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 /* x / |x|. */

@@ -12,6 +12,7 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,6 +2,7 @@
 #include "model/inertia_terms.h"
 
 #include "base/alloc.h"
+#include "base/vector.h"
 #include "model/equations.h"
 
 #include <math.h>
@@ -47,13 +48,6 @@ static void take_pair(const moments *of, int64_t j, int64_t k, double P[3][3])
     for (int a = 0; a < 3; a++)
         for (int b = 0; b < 3; b++)
             P[a][b] = product_of(of, a, j, b, k);
-}
-
-static void cross(const double *a, const double *b, double *out)
-{
-    for (int i = 0; i < 3; i++)
-        out[i] =
-            a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
 }
 
 /*
@@ -104,7 +98,7 @@ static void find_momenta(const double *o, moments *of)
         const double *momentum = ritz_dense_col(of->S, k);
         double *h = ritz_dense_col(&of->h, k);
 
-        cross(o, momentum, h);
+        ritz_cross(o, momentum, h);
         for (int a = 0; a < 3; a++)
             h[a] = momentum[3 + a] - h[a];
     }

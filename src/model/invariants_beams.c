@@ -5,15 +5,11 @@
 #include "base/search.h"
 #include "base/team.h"
 #include "base/tolerances.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static double dot(const double *a, const double *b)
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 double ritz_shared_directions(const double *axes_i, const int64_t *row_i,
                               const double *axes_j, const int64_t *row_j)
@@ -23,9 +19,9 @@ double ritz_shared_directions(const double *axes_i, const int64_t *row_i,
     for (int64_t p = 0; p < 3; p++)
         for (int64_t q = 0; q < 3; q++)
             if (row_i[p] >= 0 && row_j[q] >= 0) {
-                const double cosine = axes_i == axes_j
-                                          ? (double)(p == q)
-                                          : dot(axes_i + 3 * p, axes_j + 3 * q);
+                const double cosine =
+                    axes_i == axes_j ? (double)(p == q)
+                                     : ritz_dot(axes_i + 3 * p, axes_j + 3 * q);
 
                 sum += cosine * cosine;
             }
@@ -233,7 +229,7 @@ static void turn_block(const ritz_beam *beam, int i, int j,
 
             if (beam->row[i][p] >= 0 && beam->row[j][q] >= 0)
                 for (int64_t a = 0; a < 3; a++)
-                    sum += ap[a] * dot(&B[p / 3 * 3 + a][q / 3 * 3], aq);
+                    sum += ap[a] * ritz_dot(&B[p / 3 * 3 + a][q / 3 * 3], aq);
             out[6 * p + q] = sum;
         }
 }
@@ -394,12 +390,12 @@ static double mean_term(const ritz_beam *beam, int i, int j)
         for (int64_t q = 0; q < 3; q++) {
             const double *ap = beam->axes[i] + 3 * p;
             const double *aq = beam->axes[j] + 3 * q;
-            const double cosine = dot(ap, aq);
+            const double cosine = ritz_dot(ap, aq);
 
             if (beam->row[i][p] < 0 || beam->row[j][q] < 0)
                 continue;
             even += cosine * cosine;
-            axis += dot(beam->e, ap) * dot(beam->e, aq) * cosine;
+            axis += ritz_dot(beam->e, ap) * ritz_dot(beam->e, aq) * cosine;
         }
     return (across * even + (along - across) * axis) / fmax(even, 1.0);
 }
@@ -443,7 +439,7 @@ static void fill_factors(const ritz_beam *beam, int i, int a, double out[3][6])
     for (int64_t p = 0; p < 3; p++) {
         const double *axis = beam->axes[i] + 3 * p;
 
-        out[0][p] = e[a] * dot(e, axis);
+        out[0][p] = e[a] * ritz_dot(e, axis);
         out[1][p] = axis[a] - out[0][p];
         out[2][3 + p] = axis[b] * e[c] - axis[c] * e[b];
     }
@@ -538,7 +534,7 @@ static void fill_places(const ritz_beam *beam, const ritz_nodes *nodes, int a,
 
     for (int j = 0; j < 2; j++) {
         const double *x = nodes->grids->position + 3 * beam->grid[j];
-        const double s = e * dot(beam->e, x);
+        const double s = e * ritz_dot(beam->e, x);
 
         at[j] = s;
         at[2 + j] = x[a] - s;

@@ -6,6 +6,7 @@
  */
 #include "testing.h"
 
+#include "base/vector.h"
 #include "folder.h"
 #include "moving_body.h"
 
@@ -273,7 +274,7 @@ static void check_momenta(const flex_body *b, const moving_point *n)
         for (int i = 0; i < MOVING_POINTS; i++) {
             double moment[3];
 
-            moving_cross(n[i].x, n[i].u[k], moment);
+            ritz_cross(n[i].x, n[i].u[k], moment);
             for (int a = 0; a < 3; a++) {
                 P[a] += n[i].m * n[i].u[k][a];
                 H[a] += n[i].m * moment[a];
@@ -315,8 +316,8 @@ static void check_mass(const char *rest, const moving_point *n,
 
         m += n[i].m;
         for (int a = 0; a < 9; a++)
-            J[a] += n[i].m * ((a % 4 == 0 ? moving_dot(x, x) : 0.0) -
-                              x[a / 3] * x[a % 3]);
+            J[a] += n[i].m *
+                    ((a % 4 == 0 ? ritz_dot(x, x) : 0.0) - x[a / 3] * x[a % 3]);
         for (int a = 0; a < 3; a++)
             c[a] += n[i].m * x[a];
     }
@@ -415,11 +416,11 @@ static void forces_of_42_are_those_of_the_points(void **state)
 
             moving_place(&n[i], eta, r);
             moving_velocity(&n[i], xi, v);
-            moving_cross(w, r, wr);
-            moving_cross(w, wr, wwr);
-            moving_cross(w, v, wv);
-            force += n[i].m * (moving_dot(n[i].u[p], wwr) +
-                               2.0 * moving_dot(n[i].u[p], wv));
+            ritz_cross(w, r, wr);
+            ritz_cross(w, wr, wwr);
+            ritz_cross(w, v, wv);
+            force += n[i].m *
+                     (ritz_dot(n[i].u[p], wwr) + 2.0 * ritz_dot(n[i].u[p], wv));
         }
         assert_near(force_of_42(&b, p, eta, xi, w), force, 10.0 * sum_rounding);
     }

@@ -6,6 +6,7 @@
  */
 #include "testing.h"
 
+#include "base/vector.h"
 #include "bodies.h"
 #include "folder.h"
 #include "moving_body.h"
@@ -225,7 +226,7 @@ static const double rate[MODES] = {-1.0, 0.5, 0.25, 2.0, 0.75};
 static void turn(const double *P, const double *x, double out[static 3])
 {
     for (ptrdiff_t k = 0; k < 3; k++)
-        out[k] = moving_dot(P + 3 * k, x);
+        out[k] = ritz_dot(P + 3 * k, x);
 }
 
 /* Velocities of the points of the frame when it is at P; rotations follow. */
@@ -236,7 +237,7 @@ static void move_frame(const double *P, double q[static GLOBAL])
         double arm[3], spun[3];
 
         turn(P, unit, arm);
-        moving_cross(w, arm, spun);
+        ritz_cross(w, arm, spun);
         for (int a = 0; a < 3; a++)
             q[3 * i + a] = v0[a] + spun[a];
     }
@@ -285,7 +286,7 @@ static void global_modes_hold_rigid_motion(void **state)
         for (int p = 0; p < GLOBAL; p++)
             for (int a = 0; a < 6; a++)
                 moved[a] += f.global[p][n][a] * q[p];
-        moving_cross(w, node[n].x, spun);
+        ritz_cross(w, node[n].x, spun);
         for (int a = 0; a < 3; a++) {
             assert_near(moved[a], v0[a] + spun[a], digits);
             assert_near(moved[3 + a], w[a], digits);
@@ -308,10 +309,10 @@ static void rigid_inertia_is_that_of_the_points(void **state)
     for (int n = 0; n < MOVING_POINTS; n++) {
         double v[3];
 
-        moving_cross(w, point[n].x, v);
+        ritz_cross(w, point[n].x, v);
         for (int a = 0; a < 3; a++)
             v[a] += v0[a];
-        expected += point[n].m * moving_dot(v, v);
+        expected += point[n].m * ritz_dot(v, v);
     }
     assert_near(energy, expected, 10.0 * digits);
 }
@@ -333,10 +334,10 @@ static void check_coupling(const fx_file *f, const moving_point *point,
         moving_velocity(&point[n], rate, u);
         turn(P, point[n].x, at);
         turn(P, u, moved);
-        moving_cross(w, at, v);
+        ritz_cross(w, at, v);
         for (int a = 0; a < 3; a++)
             v[a] += v0[a];
-        expected += point[n].m * moving_dot(v, moved);
+        expected += point[n].m * ritz_dot(v, moved);
     }
     assert_near(told, expected, 10.0 * digits);
 }
@@ -375,10 +376,10 @@ static double power_of(const ritz_dense *K, const fx_file *f,
         turn(turned, force, global);
         turn(turned, force + 3, global + 3);
         turn(turned, node[n].x, at);
-        moving_cross(w, at, v);
+        ritz_cross(w, at, v);
         for (int a = 0; a < 3; a++)
             v[a] += v0[a];
-        power += moving_dot(v, global) + moving_dot(w, global + 3);
+        power += ritz_dot(v, global) + ritz_dot(w, global + 3);
     }
     return power;
 }
@@ -416,7 +417,7 @@ static void assemble(const fx_file *f, ritz_dense *K, ritz_dense *M)
             const double unit[3] = {a == 0, a == 1, a == 2};
             double spun[3];
 
-            moving_cross(unit, arm, spun);
+            ritz_cross(unit, arm, spun);
             R[p][3 + a] = spun[p % 3];
         }
     }

@@ -6,6 +6,7 @@
  */
 #include "testing.h"
 
+#include "base/vector.h"
 #include "bodies.h"
 #include "folder.h"
 #include "model/floating.h"
@@ -200,13 +201,6 @@ static void read_fem(const char *path, fem_data *f)
 
 /* ---- invariants --------------------------------------------------------- */
 
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    for (int k = 0; k < 3; k++)
-        out[k] =
-            a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-}
-
 /* As the manual of theory numbers them; 9 has J of 7 and M for its traces. */
 typedef struct fem_invariants {
     double I1, I2[3], I7[3][3];
@@ -236,14 +230,14 @@ static void add_node(int modes, double m, const double x[3], double (*U)[3],
     for (int a = 0; a < 3; a++)
         of->I2[a] += m * x[a];
     for (int j = 0; j < modes; j++) {
-        cross(x, U[j], v);
+        ritz_cross(x, U[j], v);
         for (int a = 0; a < 3; a++) {
             of->I3[j][a] += m * U[j][a];
             of->I4[j][a] += m * v[a];
         }
         add_twice(m, x, U[j], of->I8[j]);
         for (int k = 0; k < modes; k++) {
-            cross(U[j], U[k], v);
+            ritz_cross(U[j], U[k], v);
             for (int a = 0; a < 3; a++) {
                 of->I5[j][k][a] += m * v[a];
                 of->I6[j][k] += m * U[j][a] * U[k][a];

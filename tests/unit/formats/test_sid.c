@@ -5,6 +5,7 @@
 #include "testing.h"
 
 #include "base/alloc.h"
+#include "base/vector.h"
 #include "folder.h"
 #include "formats/sid.h"
 #include "moving_body.h"
@@ -260,7 +261,7 @@ static void assert_turned(const sid_node *node, int64_t j)
         const double unit[3] = {b == 0, b == 1, b == 2};
         double moved[3];
 
-        moving_cross(psi, unit, moved);
+        ritz_cross(psi, unit, moved);
         for (int a = 0; a < 3; a++) {
             assert_true(sid_m0(&node->at[SID_AP], a, b) == unit[a]);
             assert_true(sid_m1(&node->at[SID_AP], a, j, b) == moved[a]);

@@ -4,6 +4,7 @@
  */
 #include "testing.h"
 
+#include "base/vector.h"
 #include "folder.h"
 #include "moving_body.h"
 #include "sid_file.h"
@@ -74,8 +75,8 @@ static void check_rigid(const sid_file *f, const moving_point *n,
             int a = at[e][0];
             int b = at[e][1];
 
-            J[e] += n[i].m * ((a == b ? moving_dot(x, x) : 0.0) - x[a] * x[b]);
-            change[e] += n[i].m * ((a == b ? 2.0 * moving_dot(x, u) : 0.0) -
+            J[e] += n[i].m * ((a == b ? ritz_dot(x, x) : 0.0) - x[a] * x[b]);
+            change[e] += n[i].m * ((a == b ? 2.0 * ritz_dot(x, u) : 0.0) -
                                    x[a] * u[b] - u[a] * x[b]);
         }
     }
@@ -101,13 +102,13 @@ static void check_couplings(const sid_file *f, const moving_point *n,
             double r[3], moment[3];
 
             moving_place(&n[i], q, r);
-            moving_cross(r, n[i].u[k], moment);
+            ritz_cross(r, n[i].u[k], moment);
             for (int a = 0; a < 3; a++) {
                 Ct[a] += n[i].m * n[i].u[k][a];
                 Cr[a] += n[i].m * moment[a];
             }
             for (int l = 0; l < MOVING_MODES; l++)
-                Me[l] += n[i].m * moving_dot(n[i].u[k], n[i].u[l]);
+                Me[l] += n[i].m * ritz_dot(n[i].u[k], n[i].u[l]);
         }
         for (int a = 0; a < 3; a++) {
             assert_near(sid_m0(&f->of[SID_CT], k, a), Ct[a], sum_rounding);
@@ -134,11 +135,11 @@ static void check_mode_force(const sid_file *f, const moving_point *n,
 
             moving_place(&n[i], q, r);
             moving_velocity(&n[i], rate, v);
-            moving_cross(w, r, wr);
-            moving_cross(w, wr, wwr);
-            moving_cross(w, v, wv);
-            force += n[i].m * (moving_dot(n[i].u[k], wwr) +
-                               2.0 * moving_dot(n[i].u[k], wv));
+            ritz_cross(w, r, wr);
+            ritz_cross(w, wr, wwr);
+            ritz_cross(w, v, wv);
+            force += n[i].m *
+                     (ritz_dot(n[i].u[k], wwr) + 2.0 * ritz_dot(n[i].u[k], wv));
         }
         for (int64_t l = 0; l < MOVING_MODES; l++)
             for (int a = 0; a < 3; a++)
@@ -159,8 +160,8 @@ static void check_torque(const sid_file *f, const moving_point *n,
         double v[3], wv[3], xwv[3];
 
         moving_velocity(&n[i], rate, v);
-        moving_cross(w, v, wv);
-        moving_cross(n[i].x, wv, xwv);
+        ritz_cross(w, v, wv);
+        ritz_cross(n[i].x, wv, xwv);
         for (int a = 0; a < 3; a++)
             torque[a] += 2.0 * n[i].m * xwv[a];
     }
@@ -221,8 +222,8 @@ static void centrifugal_forces_are_derivatives_of_energy(void **state)
                 double r[3], wr[3];
 
                 moving_place(&n[i], q, r);
-                moving_cross(w, r, wr);
-                energy[side] += n[i].m * moving_dot(wr, wr) / 2.0;
+                ritz_cross(w, r, wr);
+                energy[side] += n[i].m * ritz_dot(wr, wr) / 2.0;
             }
         }
         q[k] = middle;
@@ -260,7 +261,7 @@ static void assemble(const sid_file *f, ritz_dense *K, ritz_dense *M)
         const double unit[3] = {b == 0, b == 1, b == 2};
         double moved[3]; /* mdCM x e_b: column of a in the moments */
 
-        moving_cross(c, unit, moved);
+        ritz_cross(c, unit, moved);
         for (int a = 0; a < 3; a++) {
             ritz_dense_col(M, b)[3 + a] = moved[a];
             ritz_dense_col(M, 3 + a)[b] = moved[a];

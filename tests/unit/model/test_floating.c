@@ -5,6 +5,7 @@
  */
 #include "testing.h"
 
+#include "base/vector.h"
 #include "fixtures/free_bodies.h"
 #include "fixtures/project.h"
 #include "model/floating.h"
@@ -79,7 +80,7 @@ static void turn_moment(const ritz_floating *f, int64_t node, int64_t k,
         double turned[3] = {0.0};
 
         if (f->turn.val)
-            free_cross(ritz_dense_col(&f->turn, k) + 3 * node, S[d], turned);
+            ritz_cross(ritz_dense_col(&f->turn, k) + 3 * node, S[d], turned);
         for (int b = 0; b < 3; b++)
             out[b][d] = turned[b];
     }
@@ -108,7 +109,7 @@ static void add_node(const ritz_component *body, const ritz_floating *f,
 
                 memset(turned, 0, sizeof turned);
                 if (f->turn.val)
-                    free_cross(ritz_dense_col(&f->turn, j) + 3 * node, WS[b],
+                    ritz_cross(ritz_dense_col(&f->turn, j) + 3 * node, WS[b],
                                turned);
                 for (int a = 0; a < 3; a++)
                     ritz_dense_col(P, b * m + k)[a * m + j] +=

@@ -4,6 +4,7 @@
  */
 #include "testing.h"
 
+#include "base/vector.h"
 #include "fixtures/bodies.h"
 #include "fixtures/frame.h"
 #include "fixtures/free_bodies.h"
@@ -42,11 +43,6 @@ typedef struct flight {
     double eta[FREE_FLEXIBLE], rate[FREE_FLEXIBLE];
 } flight;
 
-static double dot(const double *a, const double *b)
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static double shape_at(const ritz_dense *shape, int64_t row, const double *eta)
 {
     double sum = 0.0;
@@ -83,18 +79,18 @@ static double energy_of_node(const ritz_component *body, const ritz_floating *f,
     take_node(&f->turn, node, at->rate, spin);
     for (int a = 0; a < 3; a++)
         u[a] += f->position[3 * node + a];
-    free_cross(at->omega, u, turning);
+    ritz_cross(at->omega, u, turning);
     for (int a = 0; a < 3; a++)
         rate[a] += at->v[a] + turning[a];
     for (int d = 0; d < 3; d++) {
         double e[3] = {d == 0, d == 1, d == 2};
         double bent[3], moved[3];
 
-        free_cross(spin, e, moved);
-        free_cross(theta, e, bent);
+        ritz_cross(spin, e, moved);
+        ritz_cross(theta, e, bent);
         for (int a = 0; a < 3; a++)
             bent[a] += e[a];
-        free_cross(at->omega, bent, turning);
+        ritz_cross(at->omega, bent, turning);
         for (int a = 0; a < 3; a++)
             B[a][d] = moved[a] + turning[a];
     }
@@ -102,7 +98,7 @@ static double energy_of_node(const ritz_component *body, const ritz_floating *f,
     for (int a = 0; a < 3; a++)
         for (int k = 0; k < 9; k++)
             sum += B[a][k / 3] * S[k / 3][k % 3] * B[a][k % 3];
-    return sum + free_mass(body, node) * dot(rate, rate);
+    return sum + free_mass(body, node) * ritz_dot(rate, rate);
 }
 
 /* S(a, b): X_a'm u_b, or u_a'm w_b of u = Psi eta and w = Psi rate. */
@@ -141,7 +137,7 @@ static double spin_product(const double *omega, double S[3][3])
     double sum = 0.0;
 
     for (int a = 0; a < 3; a++) {
-        sum += dot(omega, omega) * S[a][a];
+        sum += ritz_dot(omega, omega) * S[a][a];
         for (int b = 0; b < 3; b++)
             sum -= omega[a] * omega[b] * S[a][b];
     }
@@ -176,8 +172,8 @@ static double find_energy(const ritz_floating *f, const flight *at)
             if (a < 3)
                 momentum[a] += P * at->eta[k];
         }
-    free_cross(at->omega, momentum, turning);
-    sum += 2.0 * dot(at->v, turning);
+    ritz_cross(at->omega, momentum, turning);
+    sum += 2.0 * ritz_dot(at->v, turning);
     first_order(of, at->eta, S);
     sum += 2.0 * spin_product(at->omega, S);
     second_order(of, at->eta, at->eta, S);
@@ -292,7 +288,7 @@ static void take_motion(const ritz_dense *C, ritz_floating *f)
             const double *c = ritz_dense_col(C, j);
             double turning[3];
 
-            free_cross(c + 3, f->position + 3 * k, turning);
+            ritz_cross(c + 3, f->position + 3 * k, turning);
             for (int a = 0; a < 3; a++) {
                 ritz_dense_col(&f->shape, j)[3 * k + a] -= c[a] + turning[a];
                 ritz_dense_col(&f->turn, j)[3 * k + a] -= c[3 + a];

@@ -5,6 +5,7 @@
  */
 #include "testing.h"
 
+#include "base/vector.h"
 #include "model/inertia_terms.h"
 
 #include <float.h>
@@ -207,13 +208,6 @@ static const double a0[3] = {0.5, -1.25, 2.0}, w[3] = {0.75, -0.5, 1.5},
 static const double q[MODES] = {0.25, -0.5}, qdot[MODES] = {1.5, 0.75},
                     qddot[MODES] = {-0.25, 2.0};
 
-static void cross(const double *x, const double *y, double *out)
-{
-    for (int a = 0; a < 3; a++)
-        out[a] =
-            x[(a + 1) % 3] * y[(a + 2) % 3] - x[(a + 2) % 3] * y[(a + 1) % 3];
-}
-
 /* p = x + u, and p'' = a0 + wdot x p + w x (w x p) + 2 w x u' + u''. */
 static void accelerate(int64_t i, double p[3], double out[3])
 {
@@ -228,10 +222,10 @@ static void accelerate(int64_t i, double p[3], double out[3])
             out[a] += qddot[k] * shape(k, i, a);
         }
     }
-    cross(wdot, p, t);
-    cross(w, p, s);
-    cross(w, s, c);
-    cross(w, du, g);
+    ritz_cross(wdot, p, t);
+    ritz_cross(w, p, s);
+    ritz_cross(w, s, c);
+    ritz_cross(w, du, g);
     for (int a = 0; a < 3; a++)
         out[a] += t[a] + c[a] + 2.0 * g[a];
 }
@@ -244,7 +238,7 @@ static void turn_by_sid(const ritz_sid_terms *t, double out[3])
 
     for (int a = 0; a < 3; a++)
         md[a] = value_of(&t->mdCM, q, a, 0);
-    cross(md, a0, out);
+    ritz_cross(md, a0, out);
     for (int a = 0; a < 3; a++) {
         for (int b = 0; b < 3; b++) {
             const double J = value_of(&t->J, q, at[a][b], 0);
@@ -257,7 +251,7 @@ static void turn_by_sid(const ritz_sid_terms *t, double out[3])
         for (int64_t l = 0; l < MODES; l++)
             out[a] += value_of(&t->Cr, q, l, a) * qddot[l];
     }
-    cross(w, Jw, gyro);
+    ritz_cross(w, Jw, gyro);
     for (int a = 0; a < 3; a++)
         out[a] += gyro[a];
 }
@@ -291,11 +285,11 @@ static void add_second_order(double turn[3])
         for (int a = 0; a < 3; a++)
             for (int64_t k = 0; k < MODES; k++)
                 u[a] += q[k] * shape(k, i, a);
-        cross(wdot, u, s);
-        cross(u, s, t);
-        cross(w, u, s);
-        cross(u, s, c); /* u~ u~' w */
-        cross(w, c, g);
+        ritz_cross(wdot, u, s);
+        ritz_cross(u, s, t);
+        ritz_cross(w, u, s);
+        ritz_cross(u, s, c); /* u~ u~' w */
+        ritz_cross(w, c, g);
         for (int a = 0; a < 3; a++)
             turn[a] += masses[i] * (t[a] + g[a]);
     }
@@ -315,7 +309,7 @@ static void terms_of_sid_are_the_inertia_forces_of_a_motion(void **state)
         double p[3], acceleration[3], moment[3];
 
         accelerate(i, p, acceleration);
-        cross(p, acceleration, moment);
+        ritz_cross(p, acceleration, moment);
         for (int a = 0; a < 3; a++) {
             torque[a] += masses[i] * moment[a];
             for (int64_t l = 0; l < MODES; l++)

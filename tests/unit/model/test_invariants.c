@@ -4,6 +4,7 @@
  */
 #include "testing.h"
 
+#include "base/vector.h"
 #include "fixtures/drafts.h"
 
 #include <stdlib.h>
@@ -61,7 +62,7 @@ static void move_corner(const draft *d, const solid *s, int c, double B[3][6])
         for (int a = 0; a < 3; a++)
             arm[a] = s->corner[c][a] - at[a];
         unit[p] = 1.0;
-        draft_cross(unit, arm, slope);
+        ritz_cross(unit, arm, slope);
         for (int a = 0; a < 3; a++) {
             B[a][p] = unit[a];
             B[a][3 + p] = slope[a];

@@ -5,6 +5,7 @@
  */
 #include "testing.h"
 
+#include "base/vector.h"
 #include "fixtures/drafts.h"
 #include "fixtures/dualspin.h"
 #include "fixtures/frame.h"
@@ -273,7 +274,7 @@ static void add_offset_beam(double mu, double away, draft *d)
         double unit[3] = {0}, slope[3];
 
         unit[p % 3] = 1.0;
-        draft_cross(unit, arm, slope);
+        ritz_cross(unit, arm, slope);
         for (int a = 0; a < 3; a++)
             ritz_dense_col(&B, 6 * (p / 3) + 3 + p % 3)[6 * (p / 3) + a] =
                 slope[a];
