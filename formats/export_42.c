@@ -47,10 +47,9 @@ static void body_42_free(body_42 *b)
 static ritz_status find_body(const ritz_reduced *reduced,
                              const ritz_export_request *request, body_42 *b)
 {
-    ritz_export_request wanted = *request; /* borrowed */
+    const ritz_floating_request wanted = {
+        request->frame ? request->frame : "centre", request->reference};
 
-    if (!wanted.frame)
-        wanted.frame = "centre";
     b->reduced = reduced;
     b->at_centre = strcmp(wanted.frame, "centre") == 0;
     RITZ_CHECK(ritz_normal_body_of(reduced, &wanted, &b->normal));

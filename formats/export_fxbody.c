@@ -173,11 +173,10 @@ static bool is_rayleigh(fxbody *b)
 static ritz_status find_body(const ritz_reduced *reduced,
                              const ritz_export_request *request, fxbody *b)
 {
-    ritz_export_request wanted = *request; /* borrowed */
+    const ritz_floating_request wanted = {
+        request->frame ? request->frame : "centre", request->reference};
     const ritz_floating *f = &b->normal.floating;
 
-    if (!wanted.frame)
-        wanted.frame = "centre";
     b->reduced = reduced;
     RITZ_CHECK(ritz_normal_body_of(reduced, &wanted, &b->normal));
     RITZ_REFUSE_IF(f->num_rigid != 0 && f->num_rigid != 6, RITZ_ERR_ARGUMENT,

@@ -19,6 +19,7 @@
  */
 #include "base/alloc.h"
 #include "formats/certificate.h"
+#include "formats/floating_report.h"
 #include "formats/sid.h"
 #include "formats/sink.h"
 
@@ -39,10 +40,11 @@ ritz_status sid_body_of(const ritz_reduced *reduced,
                         const ritz_export_request *request, sid_body *out)
 {
     static const double here[3] = {0.0, 0.0, 0.0};
+    const ritz_floating_request wanted = ritz_floating_asked(request);
     RITZ_OWN(sid_body) b = {0};
     RITZ_OWN(ritz_dense) unit = {0};
 
-    RITZ_CHECK(ritz_normal_body_of(reduced, request, &b.normal));
+    RITZ_CHECK(ritz_normal_body_of(reduced, &wanted, &b.normal));
     RITZ_CHECK(ritz_dense_identity(b.normal.num_modes, &unit));
     RITZ_CHECK(ritz_sid_terms_of(&b.normal.invariants, &unit, here, &b.terms));
     RITZ_MOVE(*out, b);

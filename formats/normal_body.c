@@ -53,17 +53,16 @@ static ritz_status float_as_usual(const ritz_reduced *reduced,
 }
 
 ritz_status ritz_normal_body_of(const ritz_reduced *reduced,
-                                const ritz_export_request *request,
+                                const ritz_floating_request *request,
                                 ritz_normal_body *out)
 {
-    const ritz_floating_request asked = ritz_floating_asked(request);
     RITZ_OWN(ritz_normal_body) b = {0};
     RITZ_OWN(ritz_pairs) pairs = {0};
 
-    if (asked.reference)
-        RITZ_CHECK(ritz_floating_of(reduced, &asked, &b.floating));
+    if (request->reference)
+        RITZ_CHECK(ritz_floating_of(reduced, request, &b.floating));
     else
-        RITZ_CHECK(float_as_usual(reduced, &asked, &b.floating));
+        RITZ_CHECK(float_as_usual(reduced, request, &b.floating));
     RITZ_CHECK(ritz_eigen_dense(&b.floating.K, &b.floating.M, &pairs));
     RITZ_CHECK(turn_modes(&pairs, &b));
     RITZ_MOVE(*out, b);

@@ -27,7 +27,7 @@ typedef struct ritz_normal_body {
  * @return as ritz_floating_of and ritz_eigen_dense
  */
 ritz_status ritz_normal_body_of(const ritz_reduced *reduced,
-                                const ritz_export_request *request,
+                                const ritz_floating_request *request,
                                 ritz_normal_body *out);
 
 /** Frame, modes, their scale, and damping. */
