@@ -16,6 +16,7 @@
  */
 #include "base/alloc.h"
 #include "base/draft.h"
+#include "base/text.h"
 #include "formats/certificate.h"
 #include "formats/normal_body.h"
 #include "formats/sink.h"
@@ -341,7 +342,7 @@ static ritz_status write_files(const body_42 *b, const char *flex,
 static ritz_status say_losses(const body_42 *b, const char *nodes,
                               ritz_export_report *report)
 {
-    const char *name = strrchr(nodes, '/');
+    const char *name = ritz_path_name(nodes);
     int64_t joints = 0;
 
     for (int64_t k = 0; k < b->reduced->num_ports; k++)
@@ -356,7 +357,6 @@ static ritz_status say_losses(const body_42 *b, const char *nodes,
     RITZ_CHECK(ritz_export_say(
         report, "mass, inertia and the certificate follow '[EOF]', where 42 "
                 "reads no more; inputs and outputs are left out"));
-    name = name ? name + 1 : nodes;
     if (strlen(name) > NAME_ROOM || strchr(name, ' '))
         RITZ_CHECK(ritz_export_say(
             report,

@@ -96,10 +96,9 @@ static ritz_status read_program(const ritz_export_request *request,
 static void name_model(const char *path, char out[RITZ_NAME_SIZE])
 {
     static const char ending[] = ".fmu";
-    const char *slash = strrchr(path, '/');
     size_t length = 0;
 
-    snprintf(out, RITZ_NAME_SIZE, "%s", slash ? slash + 1 : path);
+    snprintf(out, RITZ_NAME_SIZE, "%s", ritz_path_name(path));
     ritz_text_clean(out);
     length = strlen(out);
     if (length > sizeof ending - 1 &&

@@ -13,6 +13,7 @@
  * and of pyYeti's writer [Widrick2024].
  */
 #include "base/alloc.h"
+#include "base/text.h"
 #include "base/tolerances.h"
 #include "formats/cards.h"
 #include "formats/certificate.h"
@@ -151,22 +152,6 @@ static const struct {
 };
 enum { NUM_MEMBERS = sizeof members / sizeof *members };
 
-/* Every entry of A stored. */
-static ritz_status store_dense(const ritz_dense *A, ritz_matrix *out)
-{
-    int64_t at = 0;
-
-    RITZ_CHECK(ritz_sparse_new(A->nrow, A->ncol, A->nrow * A->ncol, &out->A));
-    for (int64_t j = 0; j < A->ncol; j++) {
-        for (int64_t i = 0; i < A->nrow; i++) {
-            out->A.rowind[at] = i;
-            out->A.val[at++] = ritz_dense_col(A, j)[i];
-        }
-        out->A.colptr[j + 1] = at;
-    }
-    return RITZ_OK;
-}
-
 static const ritz_matrix *find_matrix(const ritz_matrices *list,
                                       const char *name)
 {
@@ -204,7 +189,7 @@ static ritz_status order_matrix(const ritz_nastran_rows *rows,
             report,
             "an asymmetry of %s by %.1e of its largest entry is averaged away",
             from->name, asymmetry));
-    return store_dense(&A, out);
+    return ritz_sink_store(&A, &out->A);
 }
 
 static ritz_status make_ones(int64_t n, ritz_matrix *out)
@@ -214,7 +199,7 @@ static ritz_status make_ones(int64_t n, ritz_matrix *out)
     RITZ_CHECK(ritz_dense_new(n, 1, &ones));
     for (int64_t i = 0; i < n; i++)
         ones.val[i] = 1.0;
-    return store_dense(&ones, out);
+    return ritz_sink_store(&ones, &out->A);
 }
 
 static ritz_status make_members(const external_element *e,
@@ -234,7 +219,7 @@ static ritz_status make_members(const external_element *e,
         } else if (strcmp(name, "VA") == 0) {
             RITZ_CHECK(make_ones(e->rows.order, to));
         } else if (strcmp(name, "MUG1") == 0 && e->outputs.count > 0) {
-            RITZ_CHECK(store_dense(&e->outputs.A, to));
+            RITZ_CHECK(ritz_sink_store(&e->outputs.A, &to->A));
         } else {
             to->symmetric = true; /* one zero */
             RITZ_CHECK(ritz_sparse_new(1, 1, 0, &to->A));
@@ -420,13 +405,6 @@ static ritz_status put_part(FILE *file, const void *what)
 
 /* ---- report -------------------------------------------------------------- */
 
-static const char *name_of(const char *path)
-{
-    const char *folder = strrchr(path, '/');
-
-    return folder ? folder + 1 : path;
-}
-
 static ritz_status say_files(const external_element *e,
                              ritz_export_report *report)
 {
@@ -434,11 +412,11 @@ static ritz_status say_files(const external_element *e,
                                "superelement %" PRId64
                                ": ASSIGN INPUTT4='%.80s' UNIT=%" PRId64
                                " in the file management section",
-                               e->id, name_of(e->path[0]), e->id));
+                               e->id, ritz_path_name(e->path[0]), e->id));
     return ritz_export_say(
         report,
         "INCLUDE '%.80s' in the main bulk data, INCLUDE '%.80s' behind it",
-        name_of(e->path[1]), name_of(e->path[2]));
+        ritz_path_name(e->path[1]), ritz_path_name(e->path[2]));
 }
 
 static ritz_status say_geometry(const external_element *e,

@@ -4,6 +4,7 @@
  * know others in a mixed mesh.
  */
 #include "base/alloc.h"
+#include "base/text.h"
 #include "formats/certificate.h"
 #include "formats/sink.h"
 
@@ -123,8 +124,7 @@ static ritz_status print_light(FILE *file, const void *what)
 {
     const xdmf_pair *pair = what;
     const ritz_shapes *s = pair->shapes;
-    const char *folder = strrchr(pair->beside, '/');
-    const char *heavy = folder ? folder + 1 : pair->beside;
+    const char *heavy = ritz_path_name(pair->beside);
 
     fputs("<?xml version=\"1.0\"?>\n", file);
     ritz_comment_put_xml(file, pair->certificate);
@@ -156,10 +156,9 @@ static ritz_status print_light(FILE *file, const void *what)
 /* "shapes.xdmf.h5", in which readers look for the last ':' alone. */
 static ritz_status name_heavy(const char *output, char **out)
 {
-    const char *name = strrchr(output, '/');
     char *heavy = NULL;
 
-    RITZ_REFUSE_IF(strchr(name ? name + 1 : output, ':'), RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(strchr(ritz_path_name(output), ':'), RITZ_ERR_ARGUMENT,
                    "'%s' holds ':', which parts file and data set in XDMF",
                    output);
     RITZ_CHECK_NEW(heavy, (int64_t)strlen(output) + 4);

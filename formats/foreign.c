@@ -230,12 +230,11 @@ static ritz_status find_index(const ritz_listing *all, const spec *s,
 {
     char holds[220];
     const char *first = all->item[0].name;
-    const char *base = strrchr(file, '/');
+    const char *base = ritz_path_name(file);
     int64_t found = -1;
     int64_t times = 0;
     bool exact = false;
 
-    base = base ? base + 1 : file;
     for (int64_t k = 0; k < all->count && s->name && !exact; k++)
         exact = has_name(&all->item[k], s);
     for (int64_t k = 0; k < all->count; k++) {

@@ -241,20 +241,25 @@ static ritz_status copy_matrix(const entry *e, const ritz_sparse *A,
     return RITZ_OK;
 }
 
-/* Every entry stored, zeros too. */
-static ritz_status fill_matrix(const entry *e, const ritz_dense *A,
-                               ritz_matrix *out)
+ritz_status ritz_sink_store(const ritz_dense *A, ritz_sparse *out)
 {
     int64_t at = 0;
 
-    RITZ_CHECK(ritz_sparse_new(A->nrow, A->ncol, A->nrow * A->ncol, &out->A));
+    RITZ_CHECK(ritz_sparse_new(A->nrow, A->ncol, A->nrow * A->ncol, out));
     for (int64_t j = 0; j < A->ncol; j++) {
         for (int64_t i = 0; i < A->nrow; i++) {
-            out->A.rowind[at] = i;
-            out->A.val[at++] = ritz_dense_col(A, j)[i];
+            out->rowind[at] = i;
+            out->val[at++] = ritz_dense_col(A, j)[i];
         }
-        out->A.colptr[j + 1] = at;
+        out->colptr[j + 1] = at;
     }
+    return RITZ_OK;
+}
+
+static ritz_status fill_matrix(const entry *e, const ritz_dense *A,
+                               ritz_matrix *out)
+{
+    RITZ_CHECK(ritz_sink_store(A, &out->A));
     snprintf(out->name, sizeof out->name, "%s", e->name);
     out->symmetric = e->symmetric && ritz_dense_asymmetry(A) == 0.0;
     out->digits = 17;

@@ -36,6 +36,9 @@ ritz_status ritz_output4_style_of(const ritz_export_request *request,
                                   ritz_export_report *report,
                                   ritz_output4_style *out);
 
+/** @p A with every entry stored, zeros too. */
+ritz_status ritz_sink_store(const ritz_dense *A, ritz_sparse *out);
+
 /** Refuse a matrix that holds a value that is not finite, naming it. */
 ritz_status ritz_sink_check(const ritz_matrix *m);
 

@@ -114,6 +114,13 @@ ritz_status ritz_path_folder(const char *path, char **out)
     return RITZ_OK;
 }
 
+const char *ritz_path_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+
+    return slash ? slash + 1 : path;
+}
+
 bool ritz_path_within(const char *path, const char *folder)
 {
     RITZ_OWN_ARRAY char *inner = realpath(path, NULL);

@@ -11,6 +11,7 @@
  * zero.
  */
 #include "base/alloc.h"
+#include "base/text.h"
 
 #include <ritz/import.h>
 
@@ -109,9 +110,7 @@ static ritz_status take_members(const char *path, const ritz_listing *all,
 static ritz_status find_deck(const char *path, char **out)
 {
     static const char *const suffix[] = {".pch", ".PCH", ".asm", ".ASM"};
-    const char *folder = strrchr(path, '/');
-    const char *name = folder ? folder + 1 : path;
-    const char *point = strrchr(name, '.');
+    const char *point = strrchr(ritz_path_name(path), '.');
     const size_t stem = point ? (size_t)(point - path) : strlen(path);
     RITZ_OWN_ARRAY char *deck = NULL;
     struct stat about;

@@ -114,7 +114,7 @@ ritz_status chart_name_files(ritz_status status, const chart_sources *sources,
     if (status == RITZ_OK)
         return RITZ_OK;
     for (int64_t k = 0; k < sources->count; k++) {
-        const char *base = picture_base(sources->file[k].path);
+        const char *base = ritz_path_name(sources->file[k].path);
 
         if (strstr(ritz_error_message(), base))
             return status;

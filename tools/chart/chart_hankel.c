@@ -2,6 +2,7 @@
 #include "chart/chart.h"
 
 #include "base/alloc.h"
+#include "base/text.h"
 
 #include <math.h>
 #include <string.h>
@@ -169,7 +170,7 @@ ritz_status chart_hankel(const chart_sources *sources,
         RITZ_REFUSE_IF(file->model.rankings.count == 0, RITZ_ERR_FORMAT,
                        "'%s' holds no ranking", file->path);
         group[k].all = file->model.rankings; /* borrowed */
-        snprintf(name[k], sizeof name[k], "%.63s", picture_base(file->path));
+        snprintf(name[k], sizeof name[k], "%.63s", ritz_path_name(file->path));
     }
     result.group = group;
     result.file = name;

@@ -11,6 +11,7 @@
 #include "chart/chart.h"
 
 #include "base/alloc.h"
+#include "base/text.h"
 #include "model/squares.h"
 
 #include <ritz/matrix.h>
@@ -456,7 +457,7 @@ static ritz_status find_shapes(mac_pair *pair)
                        pair->body[k]->path);
     for (int k = 0; k < 2; k++) {
         snprintf(side[k].name, sizeof side[k].name, "%.80s%s%.80s",
-                 picture_base(side[k].file->path), side[k].at ? ", " : "",
+                 ritz_path_name(side[k].file->path), side[k].at ? ", " : "",
                  side[k].at ? side[k].at->at : "");
         if (masses)
             RITZ_CHECK(find_body_shapes(pair, &side[k]));

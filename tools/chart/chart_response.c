@@ -74,7 +74,7 @@ static ritz_status take_response(const chart_file *file, overlay *o)
                                  r->output, first->num_outputs, first->output));
     RITZ_CHECK(chart_check_names(file->path, "input", r->num_inputs, r->input,
                                  first->num_inputs, first->input));
-    o->name[o->count] = picture_base(file->path);
+    o->name[o->count] = ritz_path_name(file->path);
     o->curve[o->count++] = r;
     return RITZ_OK;
 }

@@ -39,7 +39,7 @@ static ritz_status take_runs(const chart_sources *sources, runs *out)
         else
             out->num_outputs =
                 s->num_outputs < MOST_OUTPUTS ? s->num_outputs : MOST_OUTPUTS;
-        out->name[out->count] = picture_base(file->path);
+        out->name[out->count] = ritz_path_name(file->path);
         out->run[out->count++] = s;
     }
     return RITZ_OK;

@@ -183,19 +183,12 @@ ritz_status picture_thin(int64_t count, picture_point *point, double cell)
     return RITZ_OK;
 }
 
-const char *picture_base(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-
-    return slash ? slash + 1 : path;
-}
-
 /* Set a variable to a file name in the folder of the script. */
 static void put_name(FILE *file, const char *variable, const char *path,
                      const char *ending)
 {
     fprintf(file, "if (!exists('%s')) %s = ", variable, variable);
-    quote_path(file, picture_base(path), ending);
+    quote_path(file, ritz_path_name(path), ending);
     fputc('\n', file);
 }
 

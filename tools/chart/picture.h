@@ -57,9 +57,6 @@ typedef struct picture {
  */
 ritz_status picture_new(const char *path, bool keep, picture *out);
 
-/** "rotor.h5" of "build/rotor.h5". */
-const char *picture_base(const char *path);
-
 /** Add a sign to the legend under this name, as long as there is room. */
 [[gnu::format(printf, 3, 4)]] void
 picture_add_sign(picture *p, picture_sign sign, const char *format, ...);

@@ -1,6 +1,7 @@
 #include "chart/report.h"
 
 #include "base/alloc.h"
+#include "base/text.h"
 
 #include <ritz/base.h>
 
@@ -104,7 +105,7 @@ static ritz_status put_picture(report_page *p, const struct part *part,
         request.at = (cli_list){0};
     for (int64_t k = 0; k < some->count; k++)
         sink_append(names, sizeof names, "%s%.60s", k > 0 ? ", " : "",
-                    picture_base(some->file[k].path));
+                    ritz_path_name(some->file[k].path));
     RITZ_CHECK(
         chart_name_files(report_figure(p, part->draw, some, &request, names),
                          some, part->holds));

@@ -1,6 +1,7 @@
 /* Answers of tools, held against what was claimed. */
 #include "claims/claims.h"
 
+#include "base/text.h"
 #include "base/tolerances.h"
 
 #include <ritz/base.h>
@@ -96,8 +97,7 @@ static void tell_claim(claims_state *state, bool holds, const char *what,
                        const char *found)
 {
     int64_t number = state->holds + state->fails + state->skipped + 1;
-    const char *slash = strrchr(state->file, '/');
-    const char *file = slash ? slash + 1 : state->file;
+    const char *file = ritz_path_name(state->file);
     bool skipped = state->skipping;
 
     cli_say(state->run, "%sok %ld - %s:%d %s: %s; %s%s%s",
