@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: 0BSD */
-/* FMI 2.0 [FmiTwo2024]: names, and nothing of its own. */
+/* The functions of FMI 2.0 [FmiTwo2024], by those of instance.h. */
 #include "instance.h"
 
 #include "fmi/fmi2Functions.h"
@@ -29,7 +29,8 @@ const char *fmi2GetVersion(void)
     return "2.0";
 }
 
-/* Failures are logged whatever is asked for, and there is nothing else. */
+/* There is nothing to switch: failures are always logged, and nothing else
+ * is. */
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingOn,
                                size_t nCategories,
                                const fmi2String categories[])

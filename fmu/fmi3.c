@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: 0BSD */
-/* FMI 3.0 [FmiThree2024]: names, and nothing of its own. */
+/* The functions of FMI 3.0 [FmiThree2024], by those of instance.h. */
 #include "instance.h"
 
 #include "fmi/fmi3Functions.h"
@@ -21,7 +21,7 @@ static fmi3Status settle(fmu_status status)
     return (fmi3Status)status;
 }
 
-/* For what this model has nothing of. */
+/* Refuse a call that is about something which this model does not have. */
 static fmi3Status refuse(const fmu_instance *s, const char *sentence)
 {
     return s ? settle(fmu_complain(s, "%s", sentence)) : fmi3Error;
@@ -32,7 +32,8 @@ const char *fmi3GetVersion(void)
     return fmi3Version;
 }
 
-/* Failures are logged whatever is asked for, and there is nothing else. */
+/* There is nothing to switch: failures are always logged, and nothing else
+ * is. */
 fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean loggingOn,
                                size_t nCategories,
                                const fmi3String categories[])

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: 0BSD */
-/* Functions of FMI 3.0 [FmiThree2024] for what a linear model has nothing of:
-   other types than Float64, clocks, structural parameters. */
+/* Functions of FMI 3.0 [FmiThree2024] that are about what a linear model does
+   not have: types other than Float64, clocks, structural parameters. */
 #include "instance.h"
 
 #include "fmi/fmi3Functions.h"

@@ -49,8 +49,8 @@ static int hex_digit(char c)
     return digit < 16 ? digit : digit - 6;
 }
 
-/* Where the path of a URI "file:///..." or "file:/..." begins; a path is taken
-   for itself. */
+/* Where the path in a URI "file:///..." or "file:/..." begins; text that is no
+ * such URI is a path. */
 static const char *skip_scheme(const char *uri)
 {
     static const char scheme[] = "file:";
@@ -91,7 +91,8 @@ static char *path_of_model(const char *resources, bool is_uri)
     return path;
 }
 
-/* Token and resources belong together: both are of one modelDescription. */
+/* Read the numbers; those of another token belong to another modelDescription,
+ * and are refused. */
 static bool read_model(const fmu_request *request, fmu_model *model,
                        char why[FMU_MESSAGE_SIZE])
 {
@@ -299,7 +300,7 @@ static fmu_status check_count(const fmu_instance *s, size_t count)
                         count);
 }
 
-/* memcpy, for which none may be NULL. */
+/* As memcpy, which must not be given NULL even if count is 0. */
 static void copy(double *to, const double *from, size_t count)
 {
     for (size_t k = 0; k < count; k++)
@@ -438,7 +439,7 @@ fmu_status fmu_dependencies(const fmu_instance *instance, unsigned unknown,
 
 /* ---- what changes ------------------------------------------------------- */
 
-/* The token, the mode and the time, inputs, states. */
+/* A saved state has the token, the mode, the time, inputs and states. */
 enum { STATE_HEAD = FMU_TOKEN_SIZE - 1, STATE_NUMBERS = 2 };
 
 size_t fmu_state_size(const fmu_instance *instance)

@@ -23,7 +23,8 @@ typedef enum fmu_mode {
     FMU_TERMINATED,
 } fmu_mode;
 
-/* A function of any type, as the other one knows it. */
+/* A function of any type: the importer's logger, whose type depends on the
+ * version. */
 typedef void fmu_function(void);
 
 /* How sentences reach the importer, by the callback of one version. */
@@ -48,7 +49,7 @@ typedef struct fmu_instance {
     fmu_callback to;
 } fmu_instance;
 
-/* What an importer says of an instance that it wants. */
+/* How an importer requests a new instance. */
 typedef struct fmu_request {
     const char *name, *token;
     const char *resources; /* path or URI of the folder */

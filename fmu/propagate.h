@@ -12,7 +12,7 @@
 
 #include "model.h"
 
-/* exp(A h) and its integral of one step size. */
+/* exp(A h) and its integral for one step size. */
 typedef struct fmu_step {
     double h;
     double *numbers; /* of each block: what propagate.c makes of it; NULL: this
@@ -32,7 +32,7 @@ typedef struct fmu_steps {
 /**
  * @param[in]  h   positive
  * @param[out] x1  must not be @p x0
- * @return false: there is no memory, or the motion leaves all bounds
+ * @return false: there is no memory, or the result is not finite
  */
 bool fmu_propagate(const fmu_model *model, fmu_steps *steps, double h,
                    const double *u, const double *x0, double *x1,

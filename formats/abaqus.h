@@ -31,7 +31,7 @@ ritz_status ritz_abaqus_in_line(ritz_status status, int64_t number);
  * @return false at the end of the text */
 bool ritz_abaqus_next(ritz_lines *text);
 
-/** The same, and comments are left out too. */
+/** Take the next line that is neither blank nor a comment. */
 bool ritz_abaqus_next_stated(ritz_lines *text);
 
 /** Take the next line of data. @return false at the end of the text or before a

@@ -89,8 +89,8 @@ static int64_t next_point(const ritz_deck *built, int64_t id)
     return grid < point ? grid : point;
 }
 
-/* THRU stands for what there is; for all of its numbers in a deck that defines
- * neither grids nor points. */
+/* THRU stands for the grids and points of its range that the deck defines, or
+ * for all numbers of the range if the deck defines none at all. */
 static ritz_status add_range(const ritz_bulk_cards *all,
                              const ritz_bulk_range *range,
                              const ritz_deck *built, external_rows *rows)
@@ -105,8 +105,8 @@ static ritz_status add_range(const ritz_bulk_cards *all,
     return RITZ_OK;
 }
 
-/* Keep the sentence about a dof that is named twice, as by the EXTRN cards of
- * two superelements: it matters only if these are to name rows. */
+/* Keep a sentence if a dof is named twice, as by the EXTRN cards of two
+ * superelements. An import fails by it only if EXTRN has to name its rows. */
 static ritz_status note_twice(const external_rows *rows, ritz_deck *out)
 {
     RITZ_OWN_ARRAY ritz_dof *sorted = NULL;

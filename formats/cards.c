@@ -13,7 +13,7 @@
 
 #include <inttypes.h>
 
-/* The lines of a deck on their way to its cards. */
+/* What is known while the lines of a deck are put together to cards. */
 typedef struct ritz_scanner {
     ritz_cards *cards;
     bool ended; /* ENDDATA was read */

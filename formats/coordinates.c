@@ -9,8 +9,8 @@
  * nor its symmetry. The order is the largest row or column, of entries that are
  * zero too. A matrix none of whose entries has a counterpart across the diagonal
  * is symmetric, as one with entries in one triangle only; one all of whose
- * entries have counterparts is taken as it stands. Of a mixture it is not known
- * whether what is missing is zero or equal.
+ * entries have counterparts is taken as it stands. A mixture is refused:
+ * an entry without its counterpart may be zero or equal there.
  */
 #include "base/alloc.h"
 #include "formats/market.h"
@@ -35,8 +35,8 @@ static bool is_real(const char *at, const char *end)
     return marked && ritz_decimal_skip(at, end) == end;
 }
 
-/* The first line that is not blank is an entry: what is wrong with others is
- * said with their line. */
+/* Whether the first line that is not blank is an entry. Other lines do not
+ * decide what the file is: they are refused with their number. */
 static bool begins_with_entry(const char *bytes, int64_t size)
 {
     ritz_market m = {.text = {.at = bytes, .end = bytes + size}, .bare = true};
@@ -81,9 +81,9 @@ static uint64_t mix(uint64_t z)
     return z ^ (z >> 31);
 }
 
-/* Whether each entry off the diagonal has a counterpart: if so, sums of random
-   numbers over the places of both triangles are equal, and otherwise almost
-   never. Large files have all of them, and are not sorted for this. */
+/* Whether each entry off the diagonal has a counterpart. If so, the sums of a
+ * random number for each place are the same for both triangles; if not, they
+ * almost never are. This spares sorting large files, in which all have one. */
 static bool all_paired(const ritz_market *m)
 {
     uint64_t difference = 0;
@@ -100,7 +100,7 @@ static bool all_paired(const ritz_market *m)
     return difference == 0;
 }
 
-/* Entries off the diagonal, those that are counterparts side by side. */
+/* Entries off the diagonal, sorted so that counterparts are neighbours. */
 static ritz_status list_places(const ritz_market *m, int64_t *count,
                                pair_place **out)
 {
@@ -115,8 +115,8 @@ static ritz_status list_places(const ritz_market *m, int64_t *count,
     return RITZ_OK;
 }
 
-/* Whether entries have counterparts; not some of them, unless the others are
-   zero. */
+/* Whether entries have counterparts. If some have, and others that are not zero
+ * have none, the file is refused. */
 static ritz_status find_pairs(const ritz_market *m, bool *out)
 {
     RITZ_OWN_ARRAY pair_place *place = NULL;

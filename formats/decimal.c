@@ -449,7 +449,8 @@ bool ritz_decimal_scan_field(const char *at, int64_t width, int64_t decimals,
     return true;
 }
 
-/* The blanks in front become zeros. */
+/* Blanks before the number are read as zeros, so that eight digits are combined
+ * whatever its length. */
 bool ritz_decimal_scan_eight(const char *at, int64_t *out)
 {
     uint64_t v = 0, other = 0, value = 0;

@@ -11,7 +11,7 @@
  * (REFPT_CM), or the origin of the body's axes (REFPT_JOINT).
  *
  * 42 reads what follows the numbers of a line by "%[^\n]" into 80 bytes: each
- * line needs such a text, and none may be longer. It ends before "[EOF]"; what
+ * line needs such a text, and none may be longer. 42 stops at "[EOF]"; what
  * follows is for people. Nodes are in a file of their own.
  */
 #include "base/alloc.h"
@@ -63,7 +63,7 @@ static ritz_status find_body(const ritz_reduced *reduced,
     return RITZ_OK;
 }
 
-/* A joint moves with one node: ports of one grid. */
+/* A joint of 42 moves with one node, so only a port of one grid can be one. */
 static ritz_status find_joints(body_42 *b)
 {
     const ritz_reduced *reduced = b->reduced;
@@ -96,7 +96,8 @@ static void put_count(FILE *file, int64_t count)
     fprintf(file, "%" PRId64 "   ! Number of non-zero elements\n", count);
 }
 
-/* Elements of all nodes or of all ports. `node` NULL: node k is point k. */
+/* Elements of a shape at points, the nodes or the ports. Point i is the node
+ * `node[i]`, or node i if `node` is NULL. */
 static void put_shape(FILE *file, const char *title, const char *point,
                       const ritz_dense *shape, int64_t count,
                       const int64_t *node)
@@ -229,9 +230,9 @@ static void put_shapes(FILE *file, const body_42 *b)
 }
 
 /*
- * Lines that the spacecraft file wants of the body, in its order. At the centre
- * of mass the body's axes begin at the basic origin; elsewhere they begin at
- * the reference point, about which the moments of inertia are.
+ * Lines to copy into the spacecraft file, in its order. With the reference point
+ * at the centre of mass the body's axes begin at the basic origin; otherwise
+ * they begin at the reference point, about which the moments of inertia are.
  */
 static void put_mass(FILE *file, const body_42 *b)
 {

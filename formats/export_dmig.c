@@ -93,7 +93,8 @@ static void print_number(const dmig_matrix *m, double x,
                  : ritz_large_field_print)(x, text);
 }
 
-/* Round A(i,j) as its field does, and count. */
+/* Round A(i,j) to the digits of its field; count entries, and those that
+ * change. */
 static ritz_status round_entry(dmig_matrix *m, int64_t i, int64_t j)
 {
     const double x = ritz_dense_col(&m->exact, j)[i];
@@ -178,7 +179,7 @@ typedef struct dmig_audit {
     double lowest;        /* eigenvalue over first flexible one, rounded */
     double rigid_hz, first_hz;
     double to_hz, change; /* of frequencies in the band */
-    char indefinite[160]; /* what the rounded mass has; empty: it is definite */
+    char indefinite[160]; /* in words; empty: the mass is definite */
 } dmig_audit;
 
 /* max|A r| / max|A| over rigid modes r whose largest entry is 1. */
@@ -234,8 +235,8 @@ static void compare_frequencies(const ritz_pairs *exact,
 }
 
 /*
- * Pairs of the rounded matrices. Rounding gives motions without mass some, of
- * either sign. It changes M_ij by at most c |M_ij| <= c sqrt(M_ii M_jj), hence
+ * Eigenpairs of the rounded matrices. Rounding gives a motion without mass a
+ * small one, of either sign. It changes M_ij by at most c |M_ij| <= c sqrt(M_ii M_jj), hence
  * M + n c diag(M) is semidefinite, and changes frequencies by n c / 2.
  */
 static ritz_status find_rounded(const dmig_deck *deck, dmig_audit *audit,

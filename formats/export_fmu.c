@@ -17,7 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Bytes of a file, and text that is made. */
+/* What the archive is made of, and the texts that become its files. */
 typedef struct fmu_texts {
     ritz_fmu fmu;
     char name[RITZ_NAME_SIZE];
@@ -149,7 +149,7 @@ static ritz_status make_page(const char *name, char *certificate, char **out,
     return RITZ_OK;
 }
 
-/* The SHA-256 of all that is made, with no token in it. */
+/* SHA-256 of numbers, page and description, made with zeros for the token. */
 static ritz_status find_token(const fmu_texts *p, char out[RITZ_DIGEST_SIZE])
 {
     RITZ_OWN_ARRAY char *all = NULL;

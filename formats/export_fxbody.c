@@ -18,8 +18,8 @@
  * constraint ties them to P.
  *
  * K_C^kl, the forces of deformation on a_0 ... a_3, is zero here. Since K R = 0
- * these forces do no work in any motion that the constraints admit; all that
- * they have is taken by the constraints' multipliers.
+ * these forces do no work in any motion that the constraints admit: the
+ * multipliers of the constraints balance them.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -125,7 +125,7 @@ static ritz_status find_inertia(fxbody *b)
 
 /* ---- damping ------------------------------------------------------------ */
 
-/* The line through the diagonal of D over K = diag(w^2), by least squares. */
+/* alpha and beta of D_kk = alpha + beta w_k^2, by least squares. */
 static void fit_rayleigh(fxbody *b)
 {
     const ritz_normal_body *n = &b->normal;
@@ -310,7 +310,7 @@ static void put_global_mass(FILE *file, const fxbody *b)
     end_row(&row);
 }
 
-/* Nine matrices for the elements kl of P by rows, or zeros. */
+/* Nine matrices, one for each element kl of P by rows; zeros without `mass`. */
 static void put_coupling(FILE *file, const char *title, const fxbody *b,
                          bool mass)
 {

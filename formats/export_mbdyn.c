@@ -30,7 +30,8 @@
 
 enum { COMMENT_WIDTH = 100, NUMBERS_A_LINE = 6 };
 
-/* Labels of nodes without a grid: no blank, and no grid has a letter. */
+/* Labels of nodes without a grid begin so. MBDyn takes no blank in a label, and
+ * labels of grids have no letter. */
 static const char point_label[] = "inertia";
 
 typedef struct fem_file {

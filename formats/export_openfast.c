@@ -37,7 +37,7 @@ static void superelement_free(superelement *s)
 
 /* ---- the interface ------------------------------------------------------ */
 
-/* Six coordinates of one grid, or what to do to have them. */
+/* Find the six coordinates of one grid, or refuse and say how to get them. */
 static ritz_status find_interface(const ritz_reduced *reduced,
                                   const char *ports, ritz_interface_form *form)
 {
@@ -52,7 +52,7 @@ static ritz_status find_interface(const ritz_reduced *reduced,
     return RITZ_OK;
 }
 
-/* Units that OpenFAST takes, as ritz-import --units states them. */
+/* OpenFAST takes SI units, in the words of ritz-import --units. */
 static const char wanted_units[] = "kg m s";
 
 static ritz_status check_units(const char *units)
@@ -97,7 +97,7 @@ static void put_zeros(FILE *file, int64_t count)
     fputc('\n', file);
 }
 
-/* Rows of A; zeros if it has none. */
+/* Rows of A, or of zeros if A is {0}. */
 static void print_matrix(FILE *file, const superelement *s, const char *title,
                          const ritz_dense *A)
 {

@@ -70,7 +70,7 @@ typedef struct sid_matrix {
     const double *m0; /* column j at m0 + j step; NULL: zero */
     const double *m1; /* column j of mode k at m1 + (k ncol + j) step; NULL */
     int64_t step;
-    const double *diagonal; /* of m0, instead of it; NULL: it has others */
+    const double *diagonal; /* of m0, in place of m0; NULL: m0 is given */
 } sid_matrix;
 
 typedef struct sid_text {
@@ -279,7 +279,7 @@ static ritz_status print_file(FILE *file, const void *what)
 
 /* ---- its title ---------------------------------------------------------- */
 
-/* Lines of the certificate, apart by bars, as long as whole ones have room. */
+/* Lines of the certificate with bars between them, as many as fit whole. */
 typedef struct title {
     char text[TITLE_SIZE];
     int64_t lines, kept;

@@ -276,7 +276,7 @@ static void put_numbers(FILE *file, int count, const double *x)
     fputc('\n', file);
 }
 
-/* Its origin, a point on axis 3, a point on axis 1, in the basic frame. */
+/* CORD2R has the origin, a point on axis 3 and a point on axis 1. */
 static void put_frame(FILE *file, int64_t id, const double *axes)
 {
     const double point[9] = {0.0,     0.0,     0.0,     axes[6], axes[7],
@@ -303,7 +303,7 @@ static void put_grid(FILE *file, const external_element *e, int64_t g)
             e->frame[grids->frame[g]]);
 }
 
-/* Frames and grids of the interface, the same in both decks. */
+/* Both decks have the frames and grids of the interface. */
 static void put_geometry(FILE *file, const external_element *e)
 {
     const ritz_grids *grids = &e->reduced->grids;

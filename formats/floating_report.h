@@ -1,4 +1,4 @@
-/* What is told of a body in a floating frame, in any format. */
+/* Lines of the report about a body in a floating frame, for any format. */
 #ifndef RITZ_FORMATS_FLOATING_REPORT_H
 #define RITZ_FORMATS_FLOATING_REPORT_H
 
@@ -10,7 +10,7 @@
 ritz_status ritz_floating_say(const ritz_floating *body,
                               ritz_export_report *report);
 
-/** What became of damping, for formats that hold D. */
+/** Where damping is, and what of it is left out, for formats that hold D. */
 ritz_status ritz_floating_say_damping(const ritz_reduced *reduced,
                                       const ritz_floating *body,
                                       ritz_export_report *report);

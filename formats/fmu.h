@@ -59,7 +59,7 @@ ritz_status ritz_fmu_numbers(const ritz_fmu *fmu,
                              const char token[RITZ_DIGEST_SIZE],
                              unsigned char **bytes, int64_t *size);
 
-/* What modelDescription.xml says beside the model. */
+/* What modelDescription.xml says in addition to the model. */
 typedef struct ritz_fmu_text {
     int64_t fmi; /* 2 or 3 */
     const char *name, *description;

@@ -177,10 +177,10 @@ static ritz_status fill_blocks(const ritz_motion *m, ritz_fmu *fmu)
 
 /*
  * A solver's absolute tolerance is relative to nominal values. That of a state
- * is a part of its largest |(s I - A)^-1 b| over the inputs and over real s from the
- * lowest frequency of the model to its highest: about its largest response to a
- * unit step at the time 1/s. States that hardly respond have the part
- * RITZ_HALF_DIGITS of the largest, lest a solver resolve their rounding.
+ * is a part of its largest |(s I - A)^-1 b| over the inputs and over real s from
+ * the lowest frequency of the model to its highest, which is about its largest
+ * response to a unit step at the time 1/s. States that hardly respond have the
+ * part RITZ_HALF_DIGITS of the largest, lest a solver resolve their rounding.
  */
 
 static double frequency_of(const ritz_motion *m, const double _Complex *pole,
@@ -213,7 +213,8 @@ static ritz_status find_range(const ritz_export_object *object,
     return RITZ_OK;
 }
 
-/* Largest |(s I - A)^-1 B| of each row at one s; a singular one is no news. */
+/* Raise nominal values to |(s I - A)^-1 B| at one s, which is passed over if it
+ * is an eigenvalue. */
 static ritz_status note_response(const ritz_fmu *fmu, int64_t block,
                                  int64_t first, double s, double *nominal)
 {
@@ -241,8 +242,8 @@ static ritz_status note_response(const ritz_fmu *fmu, int64_t block,
     return RITZ_OK;
 }
 
-/* At least a part of the largest, and a power of two, which does not depend on
-   the last digits. */
+/* Nominal values are at least a part of the largest, and powers of two, so that
+ * rounding does not change them. */
 static void settle_nominals(int64_t count, double *nominal)
 {
     double largest = 0.0;

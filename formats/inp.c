@@ -476,7 +476,8 @@ static ritz_status end_data(const ritz_inp *all)
     return RITZ_OK;
 }
 
-/* A comma at the end of a keyword would make its first data parameters. */
+/* Refuse a keyword that ends with a comma before data: the first line of data
+ * would be read as its parameters. */
 static ritz_status check_continued(const ritz_inp *all)
 {
     const ritz_piece odd = all->keyword.odd;

@@ -53,7 +53,8 @@ static ritz_status take_source(const ritz_reduced *reduced,
     return RITZ_OK;
 }
 
-/* How a dof moves with coordinate j; 0 of one that the component has not. */
+/* Displacement of a dof for a unit of coordinate j; 0 if the component does not
+ * have the dof. */
 static double displacement_of(const displacement_source *source, ritz_dof dof,
                               int64_t j)
 {

@@ -14,8 +14,9 @@ typedef struct ritz_nastran_point {
 typedef struct ritz_nastran_displacements {
     int64_t count;
     ritz_nastran_point *point; /* ascending */
-    ritz_dense A; /* MUG1: u = A q, with q in the order of EXTRN; along the axes
-                     of each grid. A dof that the component has not is 0 */
+    ritz_dense A; /* MUG1: u = A q, with q in the order of EXTRN and u along the
+                     axes of each grid; 0 of a dof that the component does not
+                     have */
 } ritz_nastran_displacements;
 
 /** Displacements of the grids and points of all ports, attached or not. */

@@ -1,4 +1,4 @@
-/* Rows of matrices for NASTRAN, for all that writes reduced components to it. */
+/* Rows of matrices for NASTRAN, shared by its exporters. */
 #ifndef RITZ_FORMATS_NASTRAN_ROWS_H
 #define RITZ_FORMATS_NASTRAN_ROWS_H
 

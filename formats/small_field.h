@@ -1,12 +1,12 @@
-/* Cards of eight columns a field, for all that writes bulk data. */
+/* Cards with fields of eight columns, shared by writers of bulk data. */
 #ifndef RITZ_FORMATS_SMALL_FIELD_H
 #define RITZ_FORMATS_SMALL_FIELD_H
 
 #include <stdint.h>
 #include <stdio.h>
 
-/* A card on its way to a file; a field that does not fit the line begins the
-   next one, which continues it. */
+/* A card that is being written. A field that does not fit into the line begins
+ * the next one, which continues the card. */
 typedef struct ritz_small_card {
     FILE *file;
     int fields; /* on the present line */

@@ -99,7 +99,7 @@ static ritz_status read_element_keyword(ritz_user_element *e, const char *at)
     return RITZ_OK;
 }
 
-/* The nodes of a line of the comment. */
+/* Append the nodes that one line of the comment names. */
 static ritz_status take_nodes(ritz_user_element *e)
 {
     const char *at = e->text.line + 2; /* behind the stars */
@@ -118,7 +118,7 @@ static ritz_status take_nodes(ritz_user_element *e)
     return RITZ_OK;
 }
 
-/* Whether a comment is the one that the nodes follow. */
+/* Whether this comment is the title of the nodes. */
 static bool is_title_of_nodes(const ritz_lines *text)
 {
     const ritz_comma_field title = {text->line + 2, text->line_end};
@@ -126,7 +126,7 @@ static bool is_title_of_nodes(const ritz_lines *text)
     return ritz_abaqus_spells(&title, "ELEMENT NODES");
 }
 
-/* The comment that names the nodes. */
+/* Read the nodes, which CalculiX names in a comment only. */
 static ritz_status read_nodes(ritz_user_element *e)
 {
     bool found = false;

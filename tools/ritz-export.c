@@ -1,7 +1,8 @@
 /* ritz-export - a reduced model or a response as a file of others. */
 #include "print/print.h"
 
-/* What an exporter takes beside reduced components, in three letters. */
+/* Three letters for what an exporter takes in addition to reduced
+ * components. */
 static const char *marks_of(const ritz_exporter *e, char text[4])
 {
     const bool states = (e->takes & RITZ_EXPORT_STATES) != 0;

@@ -44,7 +44,8 @@ static const ritz_listed *find_member(const ritz_listing *all,
     return NULL;
 }
 
-/* One zero in the place of a matrix that the superelement does not have. */
+/* Whether a matrix is one zero, which stands for a matrix that the superelement
+ * does not have. */
 static bool is_placeholder(const ritz_listed *item, const ritz_listed *K)
 {
     return item->nrow == 1 && item->ncol == 1 && K->nrow != 1;
@@ -63,7 +64,7 @@ static ritz_status make_spec(const char *path, const ritz_listed *item,
 /* "MUG1 36 x 32" */
 static void describe_member(const ritz_listed *item, char out[RITZ_NAME_SIZE])
 {
-    if (item->nrow < 0) /* of DMIG only reading tells */
+    if (item->nrow < 0) /* DMIG does not state its size */
         snprintf(out, RITZ_NAME_SIZE, "%.24s", item->name);
     else
         snprintf(out, RITZ_NAME_SIZE, "%.16s %" PRId64 " x %" PRId64,

@@ -140,7 +140,8 @@ static bool has_three(const ritz_port_map *port, int64_t i)
            port->dof[i + 2].component == port->dof[i].component + 2;
 }
 
-/* What a body's port is in a system that has it at R x + t. */
+/* The port of a body in a system that places the point x of the body at R x +
+ * t. */
 static ritz_status place_port(const ritz_port_map *from, const ritz_dense *P,
                               const double *R, const double *t,
                               ritz_port_map *out)

@@ -54,7 +54,7 @@ typedef struct ritz_floating {
 } ritz_floating;
 
 /**
- * The modes of a reduced component beside a moving frame.
+ * The modes of a reduced component relative to a moving frame.
  *
  * The frame brings rigid-body motion; a mode that is rigid too would make the
  * mass matrix of the whole singular. Columns of kind rigid are left out if they

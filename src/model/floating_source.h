@@ -1,4 +1,4 @@
-/* What a body in a floating frame is made of, and its reference condition. */
+/* What a floating body is made from, and its reference condition. */
 #ifndef RITZ_MODEL_FLOATING_SOURCE_H
 #define RITZ_MODEL_FLOATING_SOURCE_H
 
@@ -6,7 +6,7 @@
 #include "model/floating.h"
 #include "model/modal.h"
 
-/* What is at hand while a body is made. */
+/* The reduced component, and what is derived from it to make a body. */
 typedef struct floating_source {
     const ritz_reduced *reduced;
     int64_t count;         /* dofs, and recovered ones behind them */

@@ -1,6 +1,6 @@
 /*
- * What simulators want to know of the inertia of a body that deforms in a
- * moving frame, from the inertia invariants of its modes.
+ * Terms of inertia that simulators need of a body that deforms in a moving
+ * frame, from the inertia invariants of its modes.
  *
  * A point x of the body, from the origin of the frame, moves by u = sum_k u_k
  * q_k. With v~ w = v x w, indices j, k, l of m modes, a, b of axes, and all
@@ -110,8 +110,8 @@ ritz_status ritz_sid_terms_of(const ritz_invariants *invariants,
 void ritz_sid_terms_free(ritz_sid_terms *terms);
 
 /*
- * How much of the kinetic energy of modes the products of invariants do not
- * hold: with P_aa the three blocks (a m + j, a m + k) of `product`,
+ * The part of the kinetic energy of modes that the products of invariants do not
+ * hold. With P_aa the three blocks (a m + j, a m + k) of `product`,
  *
  *     loss = max_phi |phi'(M - sum_a P_aa) phi| / phi'M phi
  *

@@ -274,8 +274,9 @@ static double factor_of(const double *part, const double *block)
 }
 
 /*
- * Take a e e' + d I out of translations; a. Where the nodes share no direction
- * along the axis, a stays as given, and where they share no other, d is 0.
+ * Subtract a e e' + d I, fitted by least squares, from the translations; return
+ * a. Where the nodes share no direction along the axis, a stays as given, and
+ * where they share no other, d is 0.
  */
 static double take_even(const double *axis, const double *even, double a,
                         double *block)
@@ -308,8 +309,8 @@ static double scale_of(const ritz_beam *beam, int k)
            (k % 6 < 3 ? 1.0 : 1.0 / beam->L);
 }
 
-/* Whether the block i, j is that of a beam: its mass, and in `axial` its term
-   of s_i with s_j; else 0. */
+/* The mass of the beam whose block i, j this is, and in `axial` its term of s_i
+ * with s_j; 0 if it is the block of no beam. */
 static double fit_block(const ritz_beam *beam, int i, int j,
                         const double *block, double *axial)
 {

@@ -15,7 +15,7 @@ static ritz_status parse(const char *text, ritz_deck *out)
     return ritz_deck_parse("t.pch", text, (int64_t)strlen(text), ".", out);
 }
 
-/* The rows of a deck as "5.1 5.2 9.0". */
+/* Compare the rows of a deck with a list such as "5.1 5.2 9.0". */
 static void assert_rows(const char *text, const char *expected)
 {
     RITZ_OWN(ritz_deck) deck = {0};

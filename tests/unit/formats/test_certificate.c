@@ -1,4 +1,4 @@
-/* What files of other programs say of a model, and how comments are cut. */
+/* The certificate of a model, and how comments are cut into lines. */
 #include "formats/certificate.h"
 #include "testing.h"
 

@@ -75,7 +75,7 @@ static void both_triangles_are_taken_as_they_stand(void **)
     assert_holds("1 1 1.\n2 1 2.\n1 2 -2.\n2 2 3.\n3 3 5.\n", other, false);
     /* a zero shows that the file has entries on both sides */
     assert_holds("1 1 1.\n2 1 0.\n1 2 7.\n2 2 1.\n3 3 1.\n", half, false);
-    /* the counterpart of a zero may be missing */
+    /* a zero needs no counterpart */
     assert_holds("1 1 1.\n2 1 0.\n1 2 7.\n1 3 0.\n2 2 1.\n3 3 1.\n", half,
                  false);
 }

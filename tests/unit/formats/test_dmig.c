@@ -132,7 +132,8 @@ static void polar_values_are_turned(void **state)
     assert_near(im(&all.matrix[0], 0, 0), half, 2 * 2.3e-16);
 }
 
-/* Those of IFO 9 with NCOL have a number, others are those that occur. */
+/* Columns of form 9 are 1 to NCOL; other rectangular matrices have the columns
+ * that occur. */
 static void rectangular_ones_have_these_columns(void **state)
 {
     static const char TEXT[] = "DMIG,P,0,9,2,0,,,4\n"

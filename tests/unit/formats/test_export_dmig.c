@@ -272,8 +272,8 @@ static void a_body_that_rounding_holds_is_reported(void **state)
 }
 
 /* A free bar by craig-bampton, and its frequencies from what was written. */
-/* Twelve digits of 2/3 and 4/9 leave a determinant below 0 where it was 0: a
-   bar of NASTRAN-95 that is askew has no mass about its axis. */
+/* A bar of NASTRAN-95 has no mass about its axis. If it is askew, twelve digits
+ * of 2/3 and 4/9 turn a determinant of 0 into one below 0. */
 static void a_motion_without_mass_may_gain_some(void **state)
 {
     static const double K[] = {4e17, 0.0,     -1.5e17, 0.0, 1e18,

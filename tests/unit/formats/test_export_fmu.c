@@ -291,7 +291,7 @@ static void the_same_model_is_the_same_bytes(void **state)
     assert_string_not_equal(digest[0], digest[2]);
 }
 
-/* Two free bodies and their modes: nothing depends on all there is. */
+/* Two free bodies and their modes: no unknown depends on every known one. */
 static void dependencies_are_the_entries_that_are_not_zero(void **state)
 {
     const double k[2] = {4.0, 9.0};

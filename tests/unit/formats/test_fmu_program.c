@@ -567,7 +567,8 @@ static void resources_that_are_damaged_are_refused(void **state)
     }
 }
 
-/* The same with a checksum that is right, as somebody means harm. */
+/* Changed numbers with a checksum that fits them, as an attacker would
+ * write. */
 static void write_hostile(size_t word, uint64_t value, size_t cut)
 {
     unsigned char bytes[ROOM];

@@ -384,7 +384,7 @@ static double power_of(const ritz_dense *K, const fx_file *f,
     return power;
 }
 
-/* So that K_C, which has no other effect, may be zero. */
+/* K_C has no other effect than this power, so that it may be zero. */
 static void deformation_does_no_work_in_rigid_motion(void **state)
 {
     const moving_body *of = *state;

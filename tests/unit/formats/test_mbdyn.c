@@ -201,7 +201,7 @@ static void read_fem(const char *path, fem_data *f)
 
 /* ---- invariants --------------------------------------------------------- */
 
-/* As the manual of theory numbers them; 9 has J of 7 and M for its traces. */
+/* Invariants of inertia, as the theory manual numbers them. */
 typedef struct fem_invariants {
     double I1, I2[3], I7[3][3];
     double I3[MODES][3], I4[MODES][3], I8[MODES][3][3];
@@ -556,7 +556,7 @@ static void a_tangent_frame_holds_its_grid(void **state)
             assert_near(f.psi[j][2][a], 0.0, 1e-12);
 }
 
-/* A command can hold any words: none of them opens a group. */
+/* A command can hold any words, which must not open a record group. */
 static void the_certificate_is_in_comments(void **state)
 {
     const fixture *s = *state;

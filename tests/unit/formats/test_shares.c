@@ -197,7 +197,7 @@ static void threads_read_matrix_market_as_one_does(void **state)
     compare_damages("shares.mtx");
 }
 
-/* The lower triangle of a matrix, as coordinates are of one or of both. */
+/* Keep the lower triangle alone: coordinates have one triangle or both. */
 static void keep_lower(ritz_sparse *A)
 {
     int64_t count = 0;

@@ -57,8 +57,9 @@ static void the_reader_takes_the_layout(void **state)
     assert_int_equal(f.longest_mantissa, 19);
 }
 
-/* What the orders of indices and columns mean follows from what terms have in
-   common: mdCM and Ct, J and Gr, Cr and Ge, J and Oe. Twelve digits. */
+/* Terms that are made of the same integrals show the order of indices and
+ * columns: mdCM and Ct, J and Gr, Cr and Ge, J and Oe. They agree to twelve
+ * digits. */
 static void check_sample(const sid_file *f)
 {
     static const int of_J[6][2] = {{0, 0}, {1, 1}, {2, 2},

@@ -290,7 +290,7 @@ static void matrices_come_back_in_every_bit(void **state)
     }
 }
 
-/* Grid 11 is a point now. */
+/* Grid 11 becomes a scalar point. */
 static void scalar_points_may_be_attached(void **state)
 {
     RITZ_OWN(ritz_reduced) small = {0};

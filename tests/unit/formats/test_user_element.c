@@ -78,7 +78,7 @@ static void abaqus_writes_stiffness_and_mass(void **state)
 
 enum { ROWS = 12 };
 
-/* A(i, j) of the lower triangle: exact in thirteen digits. */
+/* A(i, j) of the lower triangle, which thirteen digits hold exactly. */
 static double lower(int i, int j)
 {
     return (i + 1) * 64.0 + (j + 1) / 16.0;

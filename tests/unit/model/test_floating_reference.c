@@ -296,8 +296,8 @@ static void take_motion(const ritz_dense *C, ritz_floating *f)
         }
 }
 
-/* Of a body with the frame at node 1, tangent or not. */
-static void see_motion_of_node(const ritz_floating *f, ritz_dense *C)
+/* C: translations and rotations of node 1 in each mode. */
+static void find_node_motion(const ritz_floating *f, ritz_dense *C)
 {
     assert_ok(ritz_dense_new(6, f->V.ncol, C));
     for (int64_t j = 0; j < f->V.ncol; j++)
@@ -333,7 +333,7 @@ static void tangent_and_mean_axes_become_each_other(void **state)
     assert_same(&moved.turn, &mean.turn, rounding);
     /* and back */
     ritz_dense_free(&C);
-    see_motion_of_node(&mean, &C);
+    find_node_motion(&mean, &C);
     take_motion(&C, &moved);
     assert_same(&moved.shape, &tangent.shape, rounding);
     assert_same(&moved.turn, &tangent.turn, rounding);

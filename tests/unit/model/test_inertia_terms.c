@@ -276,7 +276,7 @@ static double force_by_sid(const ritz_sid_terms *t, int64_t l)
     return sum;
 }
 
-/* What is of second order in q in J is not in SID: sum m u~ u~'. */
+/* Add sum m u~ u~', the second order of J, which SID does not have. */
 static void add_second_order(double turn[3])
 {
     for (int64_t i = 0; i < NODES; i++) {
