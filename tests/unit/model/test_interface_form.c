@@ -195,6 +195,7 @@ static void assert_refused(const ritz_reduced *reduced, const char *ports,
 static void what_cannot_be_an_interface_is_refused(void **state)
 {
     RITZ_OWN(ritz_reduced) fixed = {0}, free_free = {0};
+    int64_t ports = 0;
 
     assert_ok(attach(*state, "g4", &ritz_method_craig_bampton, &fixed));
     assert_refused(&fixed, "g5", "there is no port 'g5'");
@@ -211,8 +212,10 @@ static void what_cannot_be_an_interface_is_refused(void **state)
     assert_refused(&free_free, "g4",
                    "grid 24 of port 'g4' does not have all "
                    "six motions");
+    ports = fixed.num_ports;
     fixed.num_ports = 0;
     assert_refused(&fixed, NULL, "import with --port");
+    fixed.num_ports = ports;
 }
 
 /* Grid 4, without springs, drifts while grid 1 is held. */
