@@ -84,8 +84,8 @@ def blocks(text):
 
 
 def commands(lines):
-    """Each command of a block with the output that is quoted below it: lines
-    that begin with the name of the file that it writes, or `measure`."""
+    """Each command of a block with the output that is quoted below it, which
+    begins with the name of the file that the command writes."""
     found, quoted = [], False
     for line in "\n".join(lines).replace("\\\n", " ").splitlines():
         if line.startswith("ritz-"):
@@ -93,8 +93,8 @@ def commands(lines):
             quoted = False
         elif found and line.strip():
             first = line.split()[0]
-            quoted = quoted or first == "measure" or (
-                first[-1] == ":" and first[:-1] in found[-1][0])
+            quoted = quoted or (
+                first[-1] == ":" and first[:-1] == found[-1][0][-1])
             if quoted and line.strip() != "...":
                 found[-1][1].append(line)
     return found
