@@ -170,7 +170,8 @@ def follow_script(heading, kind, script, folder):
     missing = missing_modules(script, folder) if kind == "python" else \
         [] if shutil.which("octave-cli") else ["octave-cli"]
     if missing:
-        print(f"# skipped: {heading}: no {', '.join(missing)}", flush=True)
+        check(True, f"{heading}: a block in {kind.capitalize()} # skip no "
+              f"{', '.join(missing)}")
         return None
     status, said = run(
         [sys.executable, "-s", "-B", "-c", script] if kind == "python"
