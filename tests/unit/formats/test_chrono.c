@@ -13,24 +13,14 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { GRIDS = 3, MODES = 4 };
+enum { MODES = BODY_MODES };
 
 static int set_up(void **state)
 {
-    static const double at[GRIDS][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.5}};
     static ritz_reduced reduced;
-    RITZ_OWN(ritz_component) body = {0};
-    RITZ_OWN(ritz_basis) basis = {0};
-    ritz_request request = RITZ_REQUEST_NONE;
 
     *state = &reduced;
-    assert_ok(body_chain(GRIDS, at, 1, 5, &body));
-    request.component = &body;
-    request.modes = MODES;
-    assert_ok(ritz_component_attached(&body, "g1,g3", &request.attached));
-    assert_ok(ritz_basis_make(&ritz_method_craig_bampton, &request, &basis));
-    ritz_dofs_free(&request.attached);
-    assert_ok(ritz_reduce(&body, &basis, &reduced));
+    assert_ok(body_with_two_frames(&ritz_method_craig_bampton, &reduced));
     return folder_make(state);
 }
 

@@ -15,24 +15,12 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { GRIDS = 3 };
-
 static int set_up(void **state)
 {
-    static const double at[GRIDS][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.5}};
     static ritz_reduced reduced;
-    RITZ_OWN(ritz_component) body = {0};
-    RITZ_OWN(ritz_basis) basis = {0};
-    ritz_request request = RITZ_REQUEST_NONE;
 
     *state = &reduced;
-    assert_ok(body_chain(GRIDS, at, 1, 5, &body));
-    request.component = &body;
-    request.modes = 4;
-    assert_ok(ritz_component_attached(&body, "g1,g3", &request.attached));
-    assert_ok(ritz_basis_make(&ritz_method_macneal_rubin, &request, &basis));
-    ritz_dofs_free(&request.attached);
-    assert_ok(ritz_reduce(&body, &basis, &reduced));
+    assert_ok(body_with_two_frames(&ritz_method_macneal_rubin, &reduced));
     snprintf(reduced.damping, sizeof reduced.damping, "modal 0.01");
     return folder_make(state);
 }
