@@ -208,10 +208,7 @@ static ritz_status check_interface(const spacecraft *s, const char *units)
 {
     double rigid = 0.0, flexible = 0.0;
 
-    RITZ_REFUSE_IF(strcmp(units, "kg m s") != 0, RITZ_ERR_ARGUMENT,
-                   "Basilisk takes kg, m and s, and the units are '%s': import "
-                   "matrices in these units, with --units \"kg m s\"",
-                   *units ? units : "not known");
+    RITZ_CHECK(ritz_export_demand_si(units, "Basilisk"));
     RITZ_REFUSE_IF(s->form.count != 1, RITZ_ERR_ARGUMENT,
                    "Basilisk holds a flexible part by one grid, and the ports "
                    "have %" PRId64 ": name the port at the hub with --port",

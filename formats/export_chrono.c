@@ -58,17 +58,6 @@ static ritz_status list_frequencies(chrono_load *load)
     return RITZ_OK;
 }
 
-/* Rows of A, or of zeros if A is {0}. */
-static void put_matrix(FILE *file, const char *name, const ritz_dense *A,
-                       int64_t order)
-{
-    fprintf(file, "%s\n", name);
-    for (int64_t i = 0; i < order; i++)
-        for (int64_t j = 0; j < order; j++)
-            fprintf(file, "%.17g%c", A->val ? ritz_dense_col(A, j)[i] : 0.0,
-                    j + 1 < order ? ' ' : '\n');
-}
-
 static ritz_status put_load(FILE *file, const void *what)
 {
     const chrono_load *load = what;
@@ -83,9 +72,12 @@ static ritz_status put_load(FILE *file, const void *what)
     fprintf(file, "modes %" PRId64 "\n", count_modes(load));
     for (int64_t k = 0; k < count_modes(load); k++)
         fprintf(file, "%.17g\n", load->hertz[k]);
-    put_matrix(file, "M", &form->M, form->K.ncol);
-    put_matrix(file, "K", &form->K, form->K.ncol);
-    put_matrix(file, "D", &form->D, form->K.ncol);
+    fputs("M\n", file);
+    ritz_rows_put(file, &form->M, form->K.ncol);
+    fputs("K\n", file);
+    ritz_rows_put(file, &form->K, form->K.ncol);
+    fputs("D\n", file);
+    ritz_rows_put(file, &form->D, form->K.ncol);
     return RITZ_OK;
 }
 

@@ -52,26 +52,10 @@ static ritz_status find_interface(const ritz_reduced *reduced,
     return RITZ_OK;
 }
 
-/* OpenFAST takes SI units, in the words of ritz-import --units. */
-static const char wanted_units[] = "kg m s";
-
-static ritz_status check_units(const char *units)
-{
-    RITZ_REFUSE_IF(!*units, RITZ_ERR_ARGUMENT,
-                   "OpenFAST takes kg, m and s, and the units are not known: "
-                   "import with --units \"%s\" if they are these",
-                   wanted_units);
-    RITZ_REFUSE_IF(strcmp(units, wanted_units) != 0, RITZ_ERR_ARGUMENT,
-                   "OpenFAST takes kg, m and s, and the units are '%s': import "
-                   "matrices in these units, with --units \"%s\"",
-                   units, wanted_units);
-    return RITZ_OK;
-}
-
 static ritz_status fill_superelement(const ritz_reduced *reduced,
                                      const char *ports, superelement *out)
 {
-    RITZ_CHECK(check_units(reduced->units));
+    RITZ_CHECK(ritz_export_demand_si(reduced->units, "OpenFAST"));
     return find_interface(reduced, ports, &out->form);
 }
 
@@ -106,15 +90,7 @@ static void print_matrix(FILE *file, const superelement *s, const char *title,
     fprintf(file, "!%s\n", title);
     if (!s->weighs)
         fprintf(file, "!Dimension: %" PRId64 "\n", n);
-    for (int64_t i = 0; i < n; i++) {
-        if (!A->val) {
-            put_zeros(file, n);
-            continue;
-        }
-        for (int64_t j = 0; j < n; j++)
-            fprintf(file, "%s%.17g", j > 0 ? " " : "", ritz_dense_col(A, j)[i]);
-        fputc('\n', file);
-    }
+    ritz_rows_put(file, A, n);
 }
 
 /* Zero loads and wave elevation at the times 0 and 1, which also hold after. */

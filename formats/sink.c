@@ -104,6 +104,29 @@ ritz_status ritz_export_check(const ritz_exporter *exporter,
                    exporter->name);
     RITZ_REFUSE_IF((request->frame || request->reference) &&
                        !(exporter->takes & RITZ_EXPORT_FRAME),
+ritz_status ritz_export_demand_si(const char *units, const char *program)
+{
+    static const char si[] = "kg m s"; /* as ritz-import --units states them */
+
+    RITZ_REFUSE_IF(!*units, RITZ_ERR_ARGUMENT,
+                   "%s takes kg, m and s, and the units are not known: import "
+                   "with --units \"%s\" if they are these",
+                   program, si);
+    RITZ_REFUSE_IF(strcmp(units, si) != 0, RITZ_ERR_ARGUMENT,
+                   "%s takes kg, m and s, and the units are '%s': import "
+                   "matrices in these units, with --units \"%s\"",
+                   program, units, si);
+    return RITZ_OK;
+}
+
+void ritz_rows_put(FILE *file, const ritz_dense *A, int64_t n)
+{
+    for (int64_t i = 0; i < n; i++)
+        for (int64_t j = 0; j < n; j++)
+            fprintf(file, "%.17g%c", A->val ? ritz_dense_col(A, j)[i] : 0.0,
+                    j + 1 < n ? ' ' : '\n');
+}
+
                    RITZ_ERR_ARGUMENT, "%s has no body in a moving frame",
                    exporter->name);
     return RITZ_OK;

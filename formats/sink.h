@@ -64,6 +64,13 @@ ritz_status ritz_export_damped(const ritz_export_object *object,
                                const char *usual, ritz_export_report *report,
                                ritz_matrices *out);
 
+/** Refuse other units than kg, m and s. @param[in] program  that takes these,
+ * for the sentence: "OpenFAST" */
+ritz_status ritz_export_demand_si(const char *units, const char *program);
+
+/** @p n rows of as many numbers, with 17 digits; A {0}: zeros. */
+void ritz_rows_put(FILE *file, const ritz_dense *A, int64_t n);
+
 /** @p text with markup as entities and control characters as '?'. */
 void ritz_xml_put(FILE *file, const char *text);
 

@@ -231,7 +231,7 @@ static void other_bodies_are_refused(void **state)
     ritz_reduced *body = *state;
 
     body->units[0] = '\0';
-    assert_refused(body, "and the units are 'not known'");
+    assert_refused(body, "and the units are not known");
     snprintf(body->units, sizeof body->units, "kg m s");
     body->K.val[0] = 1e3;
     assert_refused(body, "the body is held at the ground, at 1.13 Hz");
