@@ -356,8 +356,8 @@ fmu_status fmu_do_step(fmu_instance *instance, double from, double h)
     if (fmu_expect(instance, FMU_RUNNING, "a step") != FMU_OK)
         return FMU_ERROR;
     if (!(h > 0.0) || !isfinite(from) || !isfinite(from + h))
-        return fmu_complain(instance, "a step from %g over %g is none", from,
-                            h);
+        return fmu_complain(instance, "no step from %g over %g is possible",
+                            from, h);
     if (!fmu_propagate(&instance->model, &instance->steps, h, instance->u,
                        before, instance->work, why))
         return fmu_complain(instance, "%s", why);

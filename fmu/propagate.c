@@ -121,7 +121,7 @@ bool fmu_propagate(const fmu_model *model, fmu_steps *steps, double h,
     for (size_t i = 0; i < model->num_states; i++)
         if (!isfinite(x1[i])) {
             snprintf(why, FMU_MESSAGE_SIZE,
-                     "the motion leaves all bounds in a step of %g", h);
+                     "the motion is not finite after a step of %g", h);
             return false;
         }
     return true;

@@ -141,8 +141,8 @@ static ritz_status find_pairs(const ritz_market *m, bool *out)
     }
     RITZ_REFUSE_IF(*out && alone, RITZ_ERR_FORMAT,
                    "entry (%" PRId64 ", %" PRId64 ") has no counterpart across "
-                   "the diagonal, and others have: whether that is zero or "
-                   "equal is not known",
+                   "the diagonal, but others have: it may be zero there, or "
+                   "equal",
                    alone->row + 1, alone->col + 1);
     return RITZ_OK;
 }

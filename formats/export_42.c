@@ -58,8 +58,8 @@ static ritz_status find_body(const ritz_reduced *reduced,
         b->at_centre &&
             b->normal.floating.reference != RITZ_REFERENCE_MEAN_AXIS,
         RITZ_ERR_ARGUMENT,
-        "at the centre of mass 42 takes modes of mean axes of a free "
-        "body: name another frame, as --frame basic");
+        "at the centre of mass 42 takes modes of a free body that are referred "
+        "to mean axes: name another frame, as --frame basic");
     return RITZ_OK;
 }
 

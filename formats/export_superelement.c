@@ -463,8 +463,8 @@ static ritz_status name_files(const char *output, external_element *e)
                        output[length - 5] == '/',
                    RITZ_ERR_ARGUMENT,
                    "'%s' does not end with .op4: a superelement is the files "
-                   "NAME.op4, NAME.asm and NAME.pch, of which the first is "
-                   "named",
+                   "NAME.op4, NAME.asm and NAME.pch, and takes the name of "
+                   "the first",
                    output);
     for (int k = 0; k < 3; k++) {
         RITZ_CHECK_COPY(e->path[k], output, (int64_t)length + 1);

@@ -73,37 +73,37 @@ ritz_status ritz_sink_check(const ritz_matrix *m)
 ritz_status ritz_export_check(const ritz_exporter *exporter,
                               const ritz_export_request *request)
 {
-    bool styled = request->text || request->dense || request->digits > 0;
+    const struct {
+        bool given;
+        int takes;
+        const char *lack; /* said of an exporter that does not take it */
+    } option[] = {
+        {request->matrices != NULL, RITZ_EXPORT_MATRICES,
+         "has no matrices to choose"},
+        {request->modes != NULL, RITZ_EXPORT_SHAPES,
+         "takes a model whole, without a choice of modes"},
+        {request->text || request->dense || request->digits > 0,
+         RITZ_EXPORT_STYLE,
+         "has one way of writing, without text, dense or digits"},
+        {request->fmi > 0, RITZ_EXPORT_FMI, "has no version of FMI"},
+        {request->numbered, RITZ_EXPORT_NUMBERED,
+         "has no continuations to number"},
+        {request->id != 0, RITZ_EXPORT_ID, "has no superelement to number"},
+        {request->ports != NULL, RITZ_EXPORT_PORTS,
+         "takes a model whole, without a choice of ports"},
+        {request->frame || request->reference, RITZ_EXPORT_FRAME,
+         "has no body in a moving frame"},
+    };
 
-    RITZ_REFUSE_IF(
-        request->matrices && !(exporter->takes & RITZ_EXPORT_MATRICES),
-        RITZ_ERR_ARGUMENT, "%s has no matrices to choose", exporter->name);
+    for (size_t k = 0; k < sizeof option / sizeof *option; k++)
+        RITZ_REFUSE_IF(option[k].given && !(exporter->takes & option[k].takes),
+                       RITZ_ERR_ARGUMENT, "%s %s", exporter->name,
+                       option[k].lack);
     RITZ_REFUSE_IF(request->matrices && !*request->matrices, RITZ_ERR_ARGUMENT,
                    "no matrix is named");
-    RITZ_REFUSE_IF(request->modes && !(exporter->takes & RITZ_EXPORT_SHAPES),
-                   RITZ_ERR_ARGUMENT,
-                   "%s takes a model whole, without a choice of modes",
-                   exporter->name);
-    RITZ_REFUSE_IF(styled && !(exporter->takes & RITZ_EXPORT_STYLE),
-                   RITZ_ERR_ARGUMENT,
-                   "%s has one way of writing, without text, "
-                   "dense or digits",
-                   exporter->name);
-    RITZ_REFUSE_IF(request->fmi > 0 && !(exporter->takes & RITZ_EXPORT_FMI),
-                   RITZ_ERR_ARGUMENT, "%s has no version of FMI",
-                   exporter->name);
-    RITZ_REFUSE_IF(
-        request->numbered && !(exporter->takes & RITZ_EXPORT_NUMBERED),
-        RITZ_ERR_ARGUMENT, "%s has no continuations to number", exporter->name);
-    RITZ_REFUSE_IF(request->id != 0 && !(exporter->takes & RITZ_EXPORT_ID),
-                   RITZ_ERR_ARGUMENT, "%s has no number to be given",
-                   exporter->name);
-    RITZ_REFUSE_IF(request->ports && !(exporter->takes & RITZ_EXPORT_PORTS),
-                   RITZ_ERR_ARGUMENT,
-                   "%s takes a model whole, without a choice of ports",
-                   exporter->name);
-    RITZ_REFUSE_IF((request->frame || request->reference) &&
-                       !(exporter->takes & RITZ_EXPORT_FRAME),
+    return RITZ_OK;
+}
+
 ritz_status ritz_export_demand_si(const char *units, const char *program)
 {
     static const char si[] = "kg m s"; /* as ritz-import --units states them */
@@ -125,11 +125,6 @@ void ritz_rows_put(FILE *file, const ritz_dense *A, int64_t n)
         for (int64_t j = 0; j < n; j++)
             fprintf(file, "%.17g%c", A->val ? ritz_dense_col(A, j)[i] : 0.0,
                     j + 1 < n ? ' ' : '\n');
-}
-
-                   RITZ_ERR_ARGUMENT, "%s has no body in a moving frame",
-                   exporter->name);
-    return RITZ_OK;
 }
 
 ritz_status ritz_export_say(ritz_export_report *report, const char *format, ...)

@@ -108,7 +108,7 @@ ritz_status ritz_system_check_bodies(const ritz_system *system,
                        RITZ_SAME_MASS * ritz_dense_max(&at->M),
                    RITZ_ERR_ARGUMENT,
                    "the masses of these bodies are not the mass of the system: "
-                   "it was assembled of others");
+                   "it was assembled from others");
     return RITZ_OK;
 }
 

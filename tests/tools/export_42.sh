@@ -21,7 +21,7 @@ expect 0 'REFPT_CM' ritz-export --to 42 verified.h5 -o Flex.txt
 
 # --- refusals --------------------------------------------------------------------------
 
-expect 1 '42 takes modes of mean axes' ritz-export --to 42 --reference none \
+expect 1 '42 takes modes of a free body that are' ritz-export --to 42 --reference none \
     verified.h5 -o none.txt
 expect 1 '' ritz-export --to 42 --frame 999999 verified.h5 -o none.txt
 expect 2 'takes no state space' ritz-export --states --to 42 verified.h5 \

@@ -43,18 +43,18 @@ mv stator.pch away
 expect 0 'rows named by  grids ascending' ritz-import --superelement \
     stator.op4 -o asm.h5
 mv stator.asm elsewhere
-expect 1 'neither a .pch nor an .asm' ritz-import --superelement stator.op4 \
+expect 1 'no .pch and no .asm' ritz-import --superelement stator.op4 \
     -o none.h5
 expect 0 'rows named by  EXTRN' ritz-import --superelement stator.op4 \
     --bulk away -o bulk.h5
-expect 2 'superelement has its matrices' ritz-import --superelement \
+expect 2 'superelement names all matrices' ritz-import --superelement \
     stator.op4 --mass stator.op4:MAA -o none.h5
 expect 1 'has no stiffness of an external superelement' ritz-import \
     --superelement "$data/dualspin/stator.op4" -o none.h5
 
 expect 1 'does not end with .op4' ritz-export --to superelement small.h5 \
     -o none.bdf
-expect 2 'output4 has no number to be given' ritz-export --to output4 --id 5 \
+expect 2 'output4 has no superelement to number' ritz-export --to output4 --id 5 \
     small.h5 -o none.op4
 ritz-basis -q macneal-rubin --modes 6 stator.h5 -o free.h5
 ritz-reduce -q stator.h5 free.h5 -o free-small.h5

@@ -191,8 +191,8 @@ static ritz_status request_superelement(const char *path,
     if (!request->bulk)
         request->bulk = found->bulk;
     RITZ_REFUSE_IF(!request->bulk && !request->dofs, RITZ_ERR_ARGUMENT,
-                   "--superelement: neither a .pch nor an .asm that names the "
-                   "rows of '%s' is beside it: name a deck with --bulk",
+                   "--superelement: no .pch and no .asm next to '%s' names its "
+                   "rows: name a deck with --bulk",
                    path);
     return RITZ_OK;
 }
@@ -309,8 +309,8 @@ ritz_status import_run(cli_run *run, import_options *given)
     if (given->superelement &&
         (request->stiffness || request->mass || request->damping ||
          request->structural_damping || request->frequencies))
-        cli_refuse(program, "--superelement has its matrices: no other option "
-                            "names any");
+        cli_refuse(program, "--superelement names all matrices: give no other "
+                            "option for one");
     if (!request->stiffness && !request->mass && !request->frequencies &&
         !given->superelement)
         cli_refuse(program, "nothing to import: name --stiffness, --mass or "

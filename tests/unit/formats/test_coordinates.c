@@ -137,8 +137,8 @@ static void what_is_wrong_is_said_with_its_line(void **)
         {"1 1 2.5\n1 1 2.5\n", "entry (1, 1) is given twice"},
         {"1 1 2.5\n1 2 1.\n2 1 1.\n1 2 1.\n", "entry (1, 2) is given twice"},
         {"1 1 1.\n1 2 1.\n2 1 1.\n1 3 1e-9\n3 3 1.\n",
-         "entry (1, 3) has no counterpart across the diagonal, and others "
-         "have: whether that is zero or equal is not known"},
+         "entry (1, 3) has no counterpart across the diagonal, but others "
+         "have: it may be zero there, or equal"},
         {"1 1 1.\n1 2 1.\n3 1 1.\n1 3 1.\n", "entry (1, 2) has no counter"},
         {"1 1 2.5\n1 99999999 1.\n",
          "99999999 x 99999999 is far more than the file can fill"},

@@ -515,7 +515,7 @@ static void what_42_cannot_take_is_refused(void **state)
     const moving_body *f = *state;
     ritz_reduced other = f->reduced; /* borrowed */
 
-    assert_refused(&f->reduced, NULL, "none", "takes modes of mean axes");
+    assert_refused(&f->reduced, NULL, "none", "referred to mean axes");
     assert_refused(&f->reduced, "centre", "none", "name another frame");
     other.T = (ritz_dense){0};
     assert_refused(&other, NULL, NULL, "--without-basis");

@@ -453,7 +453,7 @@ static void calls_that_make_no_sense_are_refused(void **state)
         assert_int_equal(fmu_put(&d, 3, 1.0), FMI_ERROR);
         assert_non_null(strstr(d.said, "is set before the simulation only"));
         assert_int_equal(fmu_step_over(&d, 0.0, 0.0), FMI_ERROR);
-        assert_non_null(strstr(d.said, "a step from 0 over 0 is none"));
+        assert_non_null(strstr(d.said, "no step from 0 over 0 is possible"));
         assert_int_equal(fmu_step_over(&d, 0.0, -1.0), FMI_ERROR);
         fmu_close(&d);
     }
@@ -473,7 +473,7 @@ static void a_motion_beyond_all_bounds_ends_the_step(void **state)
         assert_int_equal(fmu_start(&d, 0.0), FMI_OK);
         assert_int_equal(fmu_put(&d, 1, 1.0), FMI_OK);
         assert_int_equal(fmu_step_over(&d, 0.0, 10.0), FMI_ERROR);
-        assert_non_null(strstr(d.said, "the motion leaves all bounds"));
+        assert_non_null(strstr(d.said, "the motion is not finite"));
         assert_near(fmu_value(&d, 3), 0.0, 0.0);
         fmu_close(&d);
     }

@@ -448,7 +448,7 @@ static void a_number_is_for_superelements(void **state)
     (void)state;
     assert_ok(ritz_export_check(&ritz_exporter_superelement, &request));
     assert_fails(ritz_export_check(&ritz_exporter_output4, &request),
-                 RITZ_ERR_ARGUMENT, "output4 has no number to be given");
+                 RITZ_ERR_ARGUMENT, "output4 has no superelement to number");
 }
 
 static ritz_status read_deck(const char *bytes, int64_t size)
