@@ -277,12 +277,136 @@ static ritz_status relax(const ritz_structure *model, const ritz_dense *N,
     return RITZ_OK;
 }
 
-static ritz_status make_columns(const ritz_structure *model,
+/* ---- rigid motion of all of it ------------------------------------------- */
+
+/* Row of R, which are rigid motions about the basic origin, for direction c of
+   a grid at x, put into row `to` of out. */
+static void put_rigid(const double *x, int64_t c, int64_t to, ritz_dense *out)
+{
+    static const double origin[3];
+    double place[3] = {x[0], x[1], x[2]};
+    double axes[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+    int64_t frame = 0;
+    const ritz_grids grids = {.position = place, .axes = axes, .frame = &frame};
+    double motion[RITZ_FRAME_MOTIONS];
+
+    ritz_tie_row(&grids, 0, c, origin, motion);
+    for (int64_t j = 0; j < RITZ_FRAME_MOTIONS; j++)
+        ritz_dense_col(out, j)[to] = motion[j];
+}
+
+/* R of the frames, and zeros up to `rows`. */
+static ritz_status move_rigidly(const ritz_interface_form *form, int64_t rows,
+                                ritz_dense *out)
+{
+    RITZ_CHECK(ritz_dense_new(rows, RITZ_FRAME_MOTIONS, out));
+    for (int64_t k = 0; k < RITZ_FRAME_MOTIONS * form->count; k++)
+        put_rigid(form->position + 3 * (k / RITZ_FRAME_MOTIONS),
+                  1 + k % RITZ_FRAME_MOTIONS, k, out);
+    return RITZ_OK;
+}
+
+/* B = T_p N_0 and R = R_p - T_p q over rows p of all ports. */
+static ritz_status list_lags(const ritz_reduced *reduced, const ritz_dense *N_0,
+                             const ritz_dense *q, ritz_dense *B, ritz_dense *R)
+{
+    int64_t rows = 0, n = 0;
+
+    for (int64_t k = 0; k < reduced->num_ports; k++)
+        rows += reduced->port[k].count;
+    RITZ_CHECK(ritz_dense_new(rows, N_0->ncol, B));
+    RITZ_CHECK(ritz_dense_new(rows, RITZ_FRAME_MOTIONS, R));
+    for (int64_t k = 0; k < reduced->num_ports; k++) {
+        const ritz_port_map *port = &reduced->port[k];
+        RITZ_OWN(ritz_dense) loose = {0}, there = {0};
+
+        RITZ_CHECK(ritz_dense_mul(&port->map, N_0, &loose));
+        RITZ_CHECK(ritz_dense_mul(&port->map, q, &there));
+        ritz_dense_put(&loose, n, 0, B);
+        for (int64_t i = 0; i < port->count; i++) {
+            if (port->dof[i].component > 0)
+                put_rigid(port->position + 3 * i, port->dof[i].component, n + i,
+                          R);
+            for (int64_t j = 0; j < RITZ_FRAME_MOTIONS; j++)
+                ritz_dense_col(R, j)[n + i] -= ritz_dense_col(&there, j)[i];
+        }
+        n += port->count;
+    }
+    return RITZ_OK;
+}
+
+/* A = (B'B)^+ B'R: motions that no port shows stay as they are. */
+static ritz_status fit_ports(const ritz_reduced *reduced, const ritz_dense *N_0,
+                             const ritz_dense *q, ritz_dense *A)
+{
+    RITZ_OWN(ritz_dense) B = {0}, R = {0}, square = {0}, right = {0};
+    RITZ_OWN(ritz_dense) U = {0}, V = {0}, part = {0};
+    RITZ_OWN_ARRAY double *s = NULL;
+
+    RITZ_CHECK(list_lags(reduced, N_0, q, &B, &R));
+    RITZ_CHECK(ritz_dense_mul_tn(&B, &B, &square));
+    RITZ_CHECK(ritz_dense_mul_tn(&B, &R, &right));
+    RITZ_CHECK(ritz_general_svd(&square, &U, &s, &V));
+    for (int64_t k = N_0->ncol - 1; k >= 0; k--)
+        s[k] = s[k] > RITZ_NEGLIGIBLE * s[0] ? 1.0 / s[k] : 0.0;
+    RITZ_CHECK(ritz_dense_mul_tn(&U, &right, &part));
+    ritz_dense_scale_rows(s, &part);
+    return ritz_dense_mul(&V, &part, A);
+}
+
+/* A = N_0'M (q_R - q) if M q_R, the momentum of rigid motion, is known. */
+static ritz_status fit_momentum(const ritz_reduced *reduced,
+                                const ritz_structure *model,
+                                const ritz_dense *N_0, const ritz_dense *q,
+                                ritz_dense *A)
+{
+    RITZ_OWN(ritz_dense) L = {0}, Mq = {0}, own = {0};
+
+    RITZ_CHECK(ritz_dense_mul(&reduced->invariants.momentum, N_0, &L));
+    RITZ_CHECK(ritz_general_transpose(&L, A));
+    RITZ_CHECK(ritz_dense_mul(&model->M, q, &Mq));
+    RITZ_CHECK(ritz_dense_mul_tn(N_0, &Mq, &own));
+    ritz_dense_add(-1.0, &own, A);
+    return RITZ_OK;
+}
+
+/*
+ * Motions N_0 without stiffness, as of a hinge, may be a part of X: it becomes
+ * X + N_0 A R^+, so that the frames' rigid motion R moves all of the body as a
+ * rigid one. R'MR is then its mass.
+ */
+static ritz_status carry_loose(const ritz_reduced *reduced,
+                               const ritz_structure *model,
+                               const ritz_dense *N_0,
+                               const ritz_interface_form *form, ritz_dense *X)
+{
+    RITZ_OWN(ritz_dense) R = {0}, q = {0}, A = {0};
+    RITZ_OWN(ritz_dense) square = {0}, inverse = {0}, share = {0}, step = {0};
+
+    if (N_0->ncol == 0)
+        return RITZ_OK;
+    RITZ_CHECK(move_rigidly(form, X->ncol, &R));
+    RITZ_CHECK(ritz_dense_mul(X, &R, &q));
+    RITZ_CHECK(reduced->invariants.momentum.val
+                   ? fit_momentum(reduced, model, N_0, &q, &A)
+                   : fit_ports(reduced, N_0, &q, &A));
+    RITZ_CHECK(ritz_dense_mul_tn(&R, &R, &square));
+    RITZ_CHECK(ritz_general_transpose(&R, &inverse));
+    RITZ_CHECK(ritz_general_solve_scaled(&square, false, &inverse));
+    RITZ_CHECK(ritz_dense_mul(&A, &inverse, &share));
+    RITZ_CHECK(ritz_dense_mul(N_0, &share, &step));
+    ritz_dense_add(1.0, &step, X);
+    return RITZ_OK;
+}
+
+static ritz_status make_columns(const ritz_reduced *reduced,
+                                const ritz_structure *model,
                                 const ritz_dense *T_b,
                                 ritz_interface_form *form)
 {
     RITZ_OWN(ritz_dense) X = {0}, N = {0};
     RITZ_OWN(ritz_pairs) pairs = {0};
+    ritz_dense N_0 = {0}; /* borrowed */
 
     RITZ_CHECK(divide_space(T_b, &X, &N));
     RITZ_CHECK_NEW(form->hertz, N.ncol);
@@ -291,6 +415,8 @@ static ritz_status make_columns(const ritz_structure *model,
         /* the second time removes what rounding left of the first */
         RITZ_CHECK(relax(model, &N, &pairs, &X));
         RITZ_CHECK(relax(model, &N, &pairs, &X));
+        N_0 = ritz_dense_part(&N, 0, pairs.num_rigid);
+        RITZ_CHECK(carry_loose(reduced, model, &N_0, form, &X));
     }
     form->num_loose = pairs.num_rigid;
     for (int64_t k = pairs.num_rigid; k < N.ncol; k++)
@@ -312,36 +438,12 @@ ritz_status ritz_interface_form_of(const ritz_reduced *reduced,
     RITZ_CHECK_IN("damping", ritz_modal_damping(&model, &damping, &model.D));
     RITZ_CHECK(find_turned(reduced, &T_b, &form.kept));
     RITZ_CHECK(form.kept ? order_columns(reduced, &T_b, &form.V)
-                         : make_columns(&model, &T_b, &form));
+                         : make_columns(reduced, &model, &T_b, &form));
     RITZ_CHECK(ritz_dense_congruence(&model.K, &form.V, &form.K));
     RITZ_CHECK(ritz_dense_congruence(&model.M, &form.V, &form.M));
     if (model.D.val)
         RITZ_CHECK(ritz_dense_project(&model.D, &form.V, &form.D));
     RITZ_MOVE(*out, form);
-    return RITZ_OK;
-}
-
-/* ---- rigid motion -------------------------------------------------------- */
-
-/* Rigid motions about the basic origin, in which modes are zero. */
-static ritz_status move_rigidly(const ritz_interface_form *form,
-                                ritz_dense *out)
-{
-    static const double origin[3];
-    double axes[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
-    RITZ_OWN_ARRAY int64_t *frame = NULL; /* all basic */
-    ritz_grids grids = {.position = form->position, .axes = axes};
-    double motion[RITZ_FRAME_MOTIONS];
-
-    RITZ_CHECK_NEW(frame, form->count);
-    grids.frame = frame;
-    RITZ_CHECK(ritz_dense_new(form->K.ncol, RITZ_FRAME_MOTIONS, out));
-    for (int64_t k = 0; k < form->count; k++)
-        for (int64_t i = 0; i < RITZ_FRAME_MOTIONS; i++) {
-            ritz_tie_row(&grids, k, i + 1, origin, motion);
-            for (int64_t j = 0; j < RITZ_FRAME_MOTIONS; j++)
-                ritz_dense_col(out, j)[RITZ_FRAME_MOTIONS * k + i] = motion[j];
-        }
     return RITZ_OK;
 }
 
@@ -352,7 +454,7 @@ ritz_status ritz_interface_form_held(const ritz_interface_form *form,
     RITZ_OWN(ritz_pairs) pairs = {0};
 
     *rigid_hz = *flexible_hz = 0.0;
-    RITZ_CHECK(move_rigidly(form, &R));
+    RITZ_CHECK(move_rigidly(form, form->K.ncol, &R));
     RITZ_CHECK(ritz_dense_congruence(&form->K, &R, &K));
     RITZ_CHECK(ritz_dense_congruence(&form->M, &R, &M));
     for (int64_t j = 0; j < RITZ_FRAME_MOTIONS; j++) {

@@ -235,6 +235,35 @@ static void what_moves_while_it_is_held_has_no_stiffness(void **state)
     assert_blocks(&form, 6);
 }
 
+/* The mass of the rigid motions of the frames. */
+static double mass_of(const ritz_reduced *reduced)
+{
+    RITZ_OWN(ritz_interface_form) form = {0};
+    double mass = -1.0;
+
+    if (ritz_interface_form_of(reduced, "g1", &form) == RITZ_OK) {
+        assert_int_equal(form.num_loose, DOFS - 6);
+        mass = ritz_dense_col(&form.M, 0)[0];
+    }
+    return mass;
+}
+
+/* As of a hinge that is free: known by the momentum, or by what ports do. */
+static void what_is_loose_is_carried_along(void **state)
+{
+    RITZ_OWN(ritz_reduced) full = {0};
+    RITZ_OWN(ritz_invariants) none = {0};
+
+    assert_ok(attach(*state, NULL, &ritz_method_full, &full));
+    if (!full.K.val)
+        return;
+    memset(full.K.val, 0, (size_t)(DOFS * DOFS) * sizeof *full.K.val);
+    assert_non_null(full.invariants.momentum.val);
+    assert_near(mass_of(&full), full.inertia.mass, 1e-11 * full.inertia.mass);
+    RITZ_MOVE(none, full.invariants);
+    assert_near(mass_of(&full), full.inertia.mass, 1e-11 * full.inertia.mass);
+}
+
 static ritz_status form_once(const ritz_reduced *reduced, const char *ports)
 {
     RITZ_OWN(ritz_interface_form) form = {0};
@@ -246,13 +275,19 @@ static ritz_status form_once(const ritz_reduced *reduced, const char *ports)
 
 static void no_allocation_failure_leaks(void **state)
 {
-    RITZ_OWN(ritz_reduced) fixed = {0}, full = {0};
+    RITZ_OWN(ritz_reduced) fixed = {0}, full = {0}, loose = {0};
 
     assert_ok(attach(*state, "g4", &ritz_method_craig_bampton, &fixed));
     assert_ok(attach(*state, NULL, &ritz_method_full, &full));
+    assert_ok(attach(*state, NULL, &ritz_method_full, &loose));
+    if (!loose.K.val)
+        return;
+    memset(loose.K.val, 0, (size_t)(DOFS * DOFS) * sizeof *loose.K.val);
+    ritz_invariants_free(&loose.invariants);
     snprintf(full.damping, sizeof full.damping, "modal 0.01");
     assert_survives_every_allocation(form_once(&fixed, NULL));
     assert_survives_every_allocation(form_once(&full, "g1,g4"));
+    assert_survives_every_allocation(form_once(&loose, "g1"));
 }
 
 static const struct CMUnitTest tests[] = {
@@ -263,6 +298,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_held_body_is_told),
     cmocka_unit_test(what_cannot_be_an_interface_is_refused),
     cmocka_unit_test(what_moves_while_it_is_held_has_no_stiffness),
+    cmocka_unit_test(what_is_loose_is_carried_along),
     cmocka_unit_test(no_allocation_failure_leaks),
 };
 
