@@ -131,6 +131,10 @@ static void put_certificate(FILE *file, const ritz_export_object *object,
         put_clean(file, "input: ", stamp->input[k]);
         fputc('\n', file);
     }
+    if (stamp && stamp->source) {
+        put_clean(file, "made by: ", stamp->source);
+        fputc('\n', file);
+    }
     if (stamp && stamp->command) {
         put_clean(file, "command: ", stamp->command);
         fputc('\n', file);

@@ -9,7 +9,8 @@
 
 /**
  * Method, order, band of its modes, units, damping, errors with their limits,
- * SHA-256 of each input, and the command; a line each, ended by '\n', control
+ * SHA-256 of each input, the command that made the model and measured it, with
+ * its band, and that of the export; a line each, ended by '\n', control
  * characters replaced by '?'. Of an object that is neither a reduced component
  * nor a state space, inputs and command alone.
  *

@@ -406,6 +406,8 @@ static ritz_status export_model(cli_run *run, model *m,
     ritz_export_request request = given->request;
     char runtime[PATH_MAX] = "";
     RITZ_OWN(ritz_shapes) shapes = {0};
+    RITZ_OWN(ritz_summary) summary = {0};
+    ritz_stamp stamp = {0};
 
     if (m->kind == MODEL_RESPONSE) {
         object.response = &m->response;
@@ -431,7 +433,10 @@ static ritz_status export_model(cli_run *run, model *m,
         RITZ_CHECK(check_reduced(run, m, given));
         object.reduced = &m->reduced;
     }
-    request.stamp = cli_stamp(run);
+    stamp = *cli_stamp(run);
+    RITZ_CHECK(ritz_container_summary(run->operand[0], &summary));
+    stamp.source = summary.command;
+    request.stamp = &stamp;
     if (exporter->takes & RITZ_EXPORT_FMI) {
         RITZ_CHECK(find_runtime(runtime));
         request.runtime = runtime;

@@ -554,7 +554,7 @@ static void every_container_says_how_it_was_made(void **)
     char first[] = "00ff  model.bdf";
     char second[] = "11ee  a longer name.op4";
     char *input[] = {first, second};
-    const ritz_stamp full = {"ritz-verb --option this", 2, input, "half"};
+    const ritz_stamp full = {"ritz-verb --option this", 2, input, "half", NULL};
 
     for (int k = 0; k < SAMPLE_KINDS; k++) {
         ritz_summary summary = {0};
@@ -591,7 +591,7 @@ static void a_command_of_any_length_comes_back(void **)
     static char command[LONG + 1];
     static char text[MANY][110];
     static char *input[MANY];
-    const ritz_stamp full = {command, MANY, input, NULL};
+    const ritz_stamp full = {command, MANY, input, NULL, NULL};
     const size_t lengths[] = {16382, 16383, 16384, LONG};
     ritz_summary summary = {0};
 

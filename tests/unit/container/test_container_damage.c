@@ -473,7 +473,7 @@ static void no_allocation_failure_leaks(void **)
 {
     char input[] = "00  name";
     char *inputs[] = {input};
-    const ritz_stamp full = {"ritz-verb", 1, inputs, NULL};
+    const ritz_stamp full = {"ritz-verb", 1, inputs, NULL, NULL};
 
     for (int k = 0; k < SAMPLE_KINDS; k++) {
         ritz_summary summary = {0};

@@ -59,6 +59,7 @@ static const char known[] =
     "error, measured: frequency-relative 0.00125, limit 0.01, at mode 7\n"
     "error, estimated: static-gain 0.5\n"
     "input: 0123  a?b.h5\n"
+    "made by: ritz-verify --band-hz 0,10\n"
     "command: ritz-export a?b.h5\n";
 
 static void a_certificate_has_errors_inputs_and_command(void **state)
@@ -69,6 +70,7 @@ static void a_certificate_has_errors_inputs_and_command(void **state)
     const ritz_stamp stamp = {.command = "ritz-export a\x01"
                                          "b.h5",
                               .num_inputs = 1,
+                              .source = "ritz-verify --band-hz 0,10",
                               .input = input};
     const ritz_export_object object = {.reduced = &r};
     RITZ_OWN_ARRAY char *got = NULL;
