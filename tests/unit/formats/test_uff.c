@@ -10,8 +10,8 @@
 #include <ritz/basis.h>
 #include <ritz/export.h>
 
-#include <stdio.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
 
