@@ -332,8 +332,8 @@ static ritz_status write_files(const body_42 *b, const char *flex,
 {
     RITZ_OWN(ritz_draft) first = {0}, second = {0};
 
-    RITZ_CHECK(ritz_draft_new(flex, &first));
-    RITZ_CHECK(ritz_draft_new(nodes, &second));
+    RITZ_CHECK_IN(flex, ritz_draft_new(flex, &first));
+    RITZ_CHECK_IN(nodes, ritz_draft_new(nodes, &second));
     RITZ_CHECK(ritz_sink_fill(&first, print_flex, b));
     RITZ_CHECK(ritz_sink_fill(&second, print_nodes, b));
     RITZ_CHECK(ritz_draft_publish(&first));

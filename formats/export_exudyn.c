@@ -340,7 +340,7 @@ static ritz_status write_body(const ritz_export_object *object,
     RITZ_CHECK(ritz_certificate(object, request->stamp, &certificate));
     cut_lines(certificate);
     parts.certificate = certificate;
-    RITZ_CHECK(ritz_draft_new(request->output, &draft));
+    RITZ_CHECK_IN(request->output, ritz_draft_new(request->output, &draft));
     RITZ_CHECK(ritz_sink_fill_h5(&draft, write_file, &parts));
     return ritz_draft_publish(&draft);
 }

@@ -182,8 +182,8 @@ static ritz_status write_shapes(const ritz_export_object *object,
     RITZ_CHECK(ritz_certificate(object, request->stamp, &certificate));
     pair.beside = beside;
     pair.certificate = certificate;
-    RITZ_CHECK(ritz_draft_new(beside, &heavy));
-    RITZ_CHECK(ritz_draft_new(request->output, &light));
+    RITZ_CHECK_IN(beside, ritz_draft_new(beside, &heavy));
+    RITZ_CHECK_IN(request->output, ritz_draft_new(request->output, &light));
     RITZ_CHECK(ritz_sink_fill_h5(&heavy, write_heavy, &pair));
     RITZ_CHECK(ritz_sink_fill(&light, print_light, &pair));
     RITZ_CHECK(ritz_draft_publish(&heavy));

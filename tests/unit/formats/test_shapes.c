@@ -158,6 +158,12 @@ static ritz_status write_once(const fixture *f, const ritz_exporter *exporter,
                            &report);
 }
 
+static void an_output_that_cannot_be_is_named(void **state)
+{
+    assert_fails(write_once(*state, &ritz_exporter_xdmf, "no/shapes.xdmf"),
+                 RITZ_ERR_FILE, "h5: cannot create 'no/shapes");
+}
+
 static void no_allocation_failure_leaks(void **state)
 {
     static const char deck[] = "BEGIN BULK\nGRID,1,,0.,0.,0.\n"
@@ -187,6 +193,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(what_has_no_place_is_refused),
     cmocka_unit_test(elements_with_strange_grids_are_counted),
     cmocka_unit_test(cells_that_do_not_fit_are_refused),
+    cmocka_unit_test(an_output_that_cannot_be_is_named),
     cmocka_unit_test(no_allocation_failure_leaks),
 };
 
