@@ -52,6 +52,9 @@ int main(int argc, char **argv)
                 "with --step, write every N-th step"),
         CLI_REAL("up-to-hz", &given.up_to_hz, "F", 1e-9, 1e9,
                  "modes of a component up to here, for --method modal"),
+        CLI_FLAG("coordinates", &given.coordinates,
+                 "store the coordinates of a reduced component or system too, "
+                 "for ritz-recover"),
         CLI_FLAG("cost", &given.cost,
                  "report what a simulated second costs, by each integrator"),
         CLI_PAIR("band-hz", given.band_hz, "F,F",

@@ -136,6 +136,13 @@ static const ritz_member simulation_members[] = {
     {"energies/balance", SET_REAL, RITZ_AT(ritz_simulation, balance), "k",
      "kinetic + potential + dissipated - work - energy at the start",
      .optional = "energies"},
+    {"coordinates/q", SET_REAL, RITZ_AT(ritz_simulation, q), "k c",
+     "coordinates of the model, of `--coordinates`", .optional = "coordinates",
+     .some = 'c'},
+    {"coordinates/v", SET_REAL, RITZ_AT(ritz_simulation, v), "k c",
+     "their rates", .optional = "coordinates", .some = 'c'},
+    {"coordinates/a", SET_REAL, RITZ_AT(ritz_simulation, a), "k c",
+     "the rates of these", .optional = "coordinates", .some = 'c'},
     {0},
 };
 
@@ -145,7 +152,9 @@ const ritz_schema ritz_schema_simulation = {
               {'m', .offset = offsetof(ritz_simulation, num_inputs),
                "inputs/names"},
               {'p', .offset = offsetof(ritz_simulation, num_outputs),
-               "outputs/names"}},
+               "outputs/names"},
+              {'c', .offset = offsetof(ritz_simulation, num_coordinates),
+               "coordinates/q"}},
     .members = simulation_members,
     .settle = settle_simulation,
 };

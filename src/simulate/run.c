@@ -473,13 +473,6 @@ ritz_status ritz_simulate_noting(ritz_model subject,
     return RITZ_OK;
 }
 
-ritz_status ritz_simulate(ritz_model subject,
-                          const ritz_simulation_request *request,
-                          ritz_simulation *out)
-{
-    return ritz_simulate_noting(subject, request, true, NULL, out);
-}
-
 void ritz_simulation_compare(const ritz_simulation *exact,
                              const ritz_simulation *other, int64_t output,
                              double *size, double *difference)

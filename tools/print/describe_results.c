@@ -66,6 +66,10 @@ ritz_status describe_simulation(cli_run *run, const ritz_simulation *s)
                 i > 0 ? "" : "outputs", s->output[i], most, when);
         sink_add(run, "%g", most);
     }
+    sink_set(run, "coordinates", "%ld", s->num_coordinates);
+    if (s->num_coordinates > 0)
+        sink_field(run, "coordinates", "", "%ld, with rates and accelerations",
+                   s->num_coordinates);
     if (s->balance)
         sink_field(run, "energies", "imbalance",
                    "balance to %.1e of the largest", find_imbalance(s));

@@ -322,7 +322,7 @@ typedef struct simulation_options {
     double band_hz[2]; /* 0, 0: not given */
     int64_t every;
     cli_list input; /* "NAME=SIGNAL" */
-    bool hold_zero, cost;
+    bool hold_zero, cost, coordinates;
     model_options model;
 } simulation_options;
 

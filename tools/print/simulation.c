@@ -340,6 +340,7 @@ simulate_response(cli_run *run, const simulation_options *given, const drive *d)
         .signal = d->signal,
         .x0 = d->x0,
         .v0 = d->v0,
+        .coordinates = given->coordinates,
     };
     RITZ_OWN(model) made = {.kind = MODEL_SIMULATION};
     ritz_simulation *s = &made.simulation;

@@ -424,6 +424,10 @@ static void compare_state_spaces(bool full)
 }
 
 static void a_state_space_comes_back(void **)
+    assert_int_equal(a.num_coordinates, b.num_coordinates);
+    assert_same(a.q, b.q, a.count * a.num_coordinates, 8);
+    assert_same(a.v, b.v, a.count * a.num_coordinates, 8);
+    assert_same(a.a, b.a, a.count * a.num_coordinates, 8);
 {
     compare_state_spaces(true);
     compare_state_spaces(false);
