@@ -468,7 +468,10 @@ static ritz_status take_cell(const ritz_card *card, const bulk_cell *cell,
     int64_t kind = cell->full && count == most ? cell->full : cell->kind;
     int64_t *end = &all->first[all->count + 1];
     int64_t held = *room;
+    int64_t id = 0;
 
+    if (card->count < 1 || ritz_card_whole(card, 0, 0, &id) != RITZ_OK)
+        id = 0; /* a cell without a number */
     if (count == 1 && corners == 2)
         return RITZ_OK;
     if (count < corners) {
@@ -481,6 +484,7 @@ static ritz_status take_cell(const ritz_card *card, const bulk_cell *cell,
         all->grid[(*end)++] = grid[place_of(kind, i)];
     }
     *room = held;
+    all->id[all->count] = id;
     all->kind[all->count++] = kind;
     return RITZ_OK;
 }
@@ -493,6 +497,7 @@ static ritz_status list_elements(const ritz_bulk_cards *all, ritz_deck *out)
 
     RITZ_CHECK_NEW(out->elements.kind, cards->num_entries);
     RITZ_CHECK_NEW(out->elements.first, cards->num_entries + 1);
+    RITZ_CHECK_NEW(out->elements.id, cards->num_entries);
     for (int64_t k = 0; k < cards->num_entries; k++) {
         const bulk_cell *cell =
             bsearch(cards->entry[k].name, cells, sizeof cells / sizeof *cells,

@@ -109,14 +109,15 @@ static bool is_bent(const ritz_inp_type *type)
     return type->cell == RITZ_CELL_LINE && type->size == 3;
 }
 
-static void put_cell(ritz_cell kind, int64_t size, const int64_t *grid,
-                     ritz_elements *out)
+static void put_cell(ritz_cell kind, int64_t id, int64_t size,
+                     const int64_t *grid, ritz_elements *out)
 {
     int64_t *end = &out->first[out->count + 1];
 
     *end = out->first[out->count];
     for (int64_t i = 0; i < size; i++)
         out->grid[(*end)++] = grid[i];
+    out->id[out->count] = id;
     out->kind[out->count++] = kind;
 }
 
@@ -128,16 +129,18 @@ static ritz_status list_cells(const ritz_inp *all, ritz_elements *out)
         bent += is_bent(all->element[k].type);
     RITZ_CHECK_NEW(out->kind, all->num_elements + bent);
     RITZ_CHECK_NEW(out->first, all->num_elements + bent + 1);
+    RITZ_CHECK_NEW(out->id, all->num_elements + bent);
     RITZ_CHECK_NEW(out->grid, all->num_joined + bent);
     for (int64_t k = 0; k < all->num_elements; k++) {
         const ritz_inp_type *type = all->element[k].type;
         const int64_t *grid = all->joined + all->element[k].first;
+        int64_t id = all->element[k].id;
 
         if (is_bent(type)) {
-            put_cell(type->cell, 2, grid, out);
-            put_cell(type->cell, 2, grid + 1, out);
+            put_cell(type->cell, id, 2, grid, out);
+            put_cell(type->cell, id, 2, grid + 1, out);
         } else if (type->cell) {
-            put_cell(type->cell, type->size, grid, out);
+            put_cell(type->cell, id, type->size, grid, out);
         }
     }
     return RITZ_OK;

@@ -60,6 +60,12 @@ int main(int argc, char **argv)
                  "of inputs of a matrix or state space [u1,u2,...]"),
         CLI_TEXT("output-names", &it->output_names, "NAME[@LIMIT][,NAME]",
                  "of outputs of matrices or a state space [y1,y2,...]"),
+        CLI_LIST("recovery", &given.recovery, "NAME=F[,KIND]",
+                 "rows S of y = S u to recover: KIND stress, force, "
+                 "displacement, acceleration or other"),
+        CLI_LIST("recovery-rows", &given.recovery_rows, "NAME=FILE",
+                 "what these rows are, a line each: element or grid, and a "
+                 "word"),
         CLI_LIST("damper", &given.damper, "NAME=GRID:COMP[,GRID:COMP]*C[*K]",
                  "damper C, and spring K, between two dofs or to ground"),
         CLI_TEXT(

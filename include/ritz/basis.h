@@ -437,6 +437,38 @@ double ritz_hankel_bound(int64_t count, const double *sigma, int64_t kept);
 void ritz_gramians_free(ritz_gramians *gramians);
 void ritz_balanced_free(ritz_balanced *balanced);
 
+/* What mode acceleration was made of. */
+typedef struct ritz_mode_accelerations {
+    int64_t count;   /* quantities that have it */
+    int64_t motions; /* rigid motions that the ports leave free */
+    double rigid;    /* largest |S R| / (|S||R|) of the rows of these, R the
+                        rigid motions */
+    char
+        reason[4 * RITZ_NAME_SIZE]; /* why the last of the others has not; "" */
+} ritz_mode_accelerations;
+
+/**
+ * Add mode acceleration to the quantities of a reduced component: Q, V, A, F
+ * and H, from a static solution with the dofs of the ports given by T q, and
+ * under inertia relief where these leave rigid motion free. Not of kind
+ * acceleration, nor of a quantity whose rows follow a free rigid motion.
+ *
+ * @param[in] T        n x r, of the basis that made @p reduced
+ * @param[in] ports    ports on which forces act that no input is, names with
+ *                     commas between them; NULL: all, "": none
+ * @param[in,out] reduced  its quantities are those of the component; after a
+ *                     failure some may have parts
+ * @return RITZ_ERR_ARGUMENT if there are no quantities, no such port or sizes
+ *         disagree; RITZ_ERR_SINGULAR as ritz_eigen_sparse, or if K has no
+ *         factor but for rigid motion
+ * @cost   a factor, and 2 r solves, 3 r with a damping matrix
+ * @see    [CraigKurdila2006]
+ */
+ritz_status ritz_mode_acceleration(const ritz_component *component,
+                                   const ritz_dense *T, const char *ports,
+                                   ritz_reduced *reduced,
+                                   ritz_mode_accelerations *out);
+
 #pragma GCC visibility pop
 
 #endif

@@ -310,6 +310,9 @@ typedef struct ritz_import_request {
                                   `input` */
     const char *output_matrix, *velocity_matrix, *acceleration_matrix;
     const char *input_names, *output_names; /* as for a state space */
+    int64_t num_recoveries, num_recovery_rows;
+    const char *const *recovery;      /* "NAME=F[,KIND]": rows of a quantity */
+    const char *const *recovery_rows; /* "NAME=FILE": what these rows are */
     int64_t num_dampers;
     const char *const *damper; /* "NAME=GRID:COMP[,GRID:COMP]*C[*K]" */
     const char *units;
@@ -381,7 +384,8 @@ typedef struct ritz_import_report {
  * refer to the rows of the mass matrix, along displacement axes: B is n x m,
  * and C, Cv and Ca are p x n (n x p where only that fits, and in files that
  * name rows). Constraints are applied to these matrices; entries of fixed dofs
- * are left out.
+ * are left out. The same holds of S in y = S u, the rows of a quantity to
+ * recover, whose kind is its name where this is one, else other.
  *
  * Instead of matrices, natural frequencies and optional damping ratios make a
  * component in modal form: K = diag(omega^2), M = I and D = diag(2 zeta omega).
@@ -416,6 +420,10 @@ typedef struct ritz_superelement {
  */
 ritz_status ritz_superelement_find(const char *path, ritz_superelement *out);
 void ritz_superelement_free(ritz_superelement *found);
+
+/** "F" of "NAME=F[,KIND]"; the caller frees @p out.
+ * @return RITZ_ERR_ARGUMENT if it is not of this form */
+ritz_status ritz_import_recovery_spec(const char *text, char **out);
 
 /* A state space out of files, as the options have it; NULL: not given. */
 typedef struct ritz_import_space_request {

@@ -48,8 +48,10 @@ typedef struct ritz_component {
     ritz_elements elements; /* for pictures; {0}: none are known */
     int64_t num_ports;
     ritz_port *port;
-    ritz_io io;                      /* for n coordinates */
-    ritz_recovery recovery;          /* dofs that constraints eliminated */
+    ritz_io io;             /* for n coordinates */
+    ritz_recovery recovery; /* dofs that constraints eliminated */
+    int64_t num_quantities;
+    ritz_quantity *quantity;
     ritz_dampers dampers;            /* K and D hold none of them */
     char damping[RITZ_DAMPING_SIZE]; /* as ritz_damping_parse reads; "" none */
     char units[RITZ_NAME_SIZE];      /* "kg m s" */
@@ -328,6 +330,8 @@ typedef struct ritz_reduced {
     int64_t num_ports;
     ritz_port_map *port;
     ritz_io io; /* for r coordinates */
+    int64_t num_quantities;
+    ritz_quantity *quantity;
     ritz_inertia inertia;
     ritz_invariants invariants;
     ritz_dense T;           /* n x r; {0} without basis */

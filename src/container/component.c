@@ -46,6 +46,26 @@ static const ritz_member load_members[] = {
 
 static const ritz_schema load_schema = {.members = load_members};
 
+static const ritz_member quantity_members[] = {
+    {"kind", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_quantity, kind), "",
+     "stress, force, displacement, acceleration or other"},
+    {"place", SET_WHOLE, RITZ_AT(ritz_quantity, place), "k",
+     "number of the element of each row, of displacement and acceleration of "
+     "the grid; 0: none",
+     "0.."},
+    {"part", SET_WORDS, RITZ_AT(ritz_quantity, part), "k",
+     "what each row is there, such as `sx`; may be empty"},
+    {"S", MATRIX_SPARSE, RITZ_AT(ritz_quantity, S), "k n",
+     "y = S u, of kind acceleration y = S u''"},
+    {0},
+};
+
+static const ritz_schema quantity_schema = {
+    .name = "quantity of a component",
+    .sizes = {{'k', .offset = offsetof(ritz_quantity, count), "place"}},
+    .members = quantity_members,
+};
+
 /* The larger of the stored asymmetry and of that which the matrices have. */
 static ritz_status settle_component(const ritz_place *place)
 {
@@ -90,6 +110,8 @@ static const ritz_member members[] = {
     {"", PART, RITZ_AT(ritz_component, io), .schema = &ritz_schema_io},
     {"recovery", PART, RITZ_AT(ritz_component, recovery), .optional = "",
      .some = 'd', .schema = &ritz_schema_recovery},
+    {"quantities", LIST, RITZ_LIST(ritz_component, quantity), "q",
+     .optional = "", .some = 'q', .schema = &quantity_schema},
     {"dampers", PART, RITZ_AT(ritz_component, dampers), .optional = "",
      .some = 'd', .schema = &ritz_schema_dampers},
     {0},
@@ -101,7 +123,8 @@ const ritz_schema ritz_schema_component = {
     .sizes = {{'n', .offset = offsetof(ritz_component, num_dofs), "dofs/grid"},
               {'c', .offset = offsetof(ritz_component, num_dofs)},
               {'l', .offset = offsetof(ritz_component, num_loads)},
-              {'b', .offset = offsetof(ritz_component, num_ports)}},
+              {'b', .offset = offsetof(ritz_component, num_ports)},
+              {'q', .offset = offsetof(ritz_component, num_quantities)}},
     .members = members,
     .settle = settle_component,
 };

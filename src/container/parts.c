@@ -76,6 +76,8 @@ static const ritz_member elements_members[] = {
     {"grids", SET_WHOLE, RITZ_AT(ritz_elements, grid), "t",
      "numbers of the grids of each element, in VTK's order; all are in "
      "`grids/id`"},
+    {"id", SET_WHOLE, RITZ_AT(ritz_elements, id), "e",
+     "number of each element in its deck", .optional = ""},
     {0},
 };
 

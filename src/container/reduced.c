@@ -29,6 +29,40 @@ static const ritz_schema port_schema = {
     .members = port_members,
 };
 
+/* Quantities to recover. */
+
+static const ritz_member quantity_members[] = {
+    {"kind", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_quantity, kind), "",
+     "as in a component, like the next two"},
+    {"place", SET_WHOLE, RITZ_AT(ritz_quantity, place), "k",
+     "number of an element or grid; 0: none", "0.."},
+    {"part", SET_WORDS, RITZ_AT(ritz_quantity, part), "k",
+     "what each row is there"},
+    {"S", MATRIX_DENSE, RITZ_AT(ritz_quantity, ST), "k r",
+     "mode displacement: y = S q, of kind acceleration y = S q''"},
+    {"Q", MATRIX_DENSE, RITZ_AT(ritz_quantity, Q), "k r",
+     "mode acceleration: y = Q q + V q' + A q'' + F f - H g, where f are the "
+     "inputs and g the forces c b'q' + k b'q of the dampers",
+     .optional = ""},
+    {"V", MATRIX_DENSE, RITZ_AT(ritz_quantity, V), "k r",
+     "by the damping matrix", .optional = ""},
+    {"A", MATRIX_DENSE, RITZ_AT(ritz_quantity, A), "k r", "by inertia",
+     .optional = ""},
+    {"F", MATRIX_DENSE, RITZ_AT(ritz_quantity, F), "k m", "by the inputs",
+     .optional = ""},
+    {"H", MATRIX_DENSE, RITZ_AT(ritz_quantity, H), "k d", "by the dampers",
+     .optional = ""},
+    {0},
+};
+
+static const ritz_schema quantity_schema = {
+    .name = "quantity of a reduced component",
+    .sizes = {{'k', .offset = offsetof(ritz_quantity, count), "place"},
+              {'m', .offset = offsetof(ritz_quantity, F.ncol), "F"},
+              {'d', .offset = offsetof(ritz_quantity, H.ncol), "H"}},
+    .members = quantity_members,
+};
+
 /* Prefixes of nested columns: a data set of errors for each measure. */
 
 static ritz_status move_errors(const ritz_place *place, hid_t group)
@@ -116,6 +150,10 @@ static ritz_status settle_reduced(const ritz_place *place)
     RITZ_CHECK_IN("elements",
                   ritz_elements_check(&reduced->elements, reduced->grids.count,
                                       reduced->grids.id));
+    RITZ_CHECK_IN("quantities", ritz_quantities_check_reduced(
+                                    reduced->num_quantities, reduced->quantity,
+                                    reduced->K.ncol, reduced->io.num_inputs,
+                                    reduced->dampers.count));
     return ritz_context(ritz_recovery_check(&reduced->recovery,
                                             reduced->num_dofs, reduced->dof),
                         "recovery");
@@ -151,6 +189,8 @@ static const ritz_member members[] = {
     {"", PART, RITZ_AT(ritz_reduced, columns), .schema = &ritz_schema_columns},
     {"ports", LIST, RITZ_LIST(ritz_reduced, port), "b", .schema = &port_schema},
     {"", PART, RITZ_AT(ritz_reduced, io), .schema = &ritz_schema_io},
+    {"quantities", LIST, RITZ_LIST(ritz_reduced, quantity), "q", .optional = "",
+     .some = 'q', .schema = &quantity_schema},
     {"inertia/mass", SET_REAL, RITZ_AT(ritz_reduced, inertia.mass), "1",
      "total mass, from the rigid geometry", .inside = true,
      .optional = "inertia", .has = has_inertia},
@@ -189,7 +229,8 @@ const ritz_schema ritz_schema_reduced = {
     .sizes = {{'n', .offset = offsetof(ritz_reduced, num_dofs)},
               {'r', .offset = offsetof(ritz_reduced, K.ncol), "K"},
               {'c', .offset = offsetof(ritz_reduced, K.ncol)},
-              {'b', .offset = offsetof(ritz_reduced, num_ports)}},
+              {'b', .offset = offsetof(ritz_reduced, num_ports)},
+              {'q', .offset = offsetof(ritz_reduced, num_quantities)}},
     .members = members,
     .settle = settle_reduced,
 };

@@ -350,13 +350,13 @@ static ritz_status read_parts(const ritz_import_request *request,
     int64_t count = parts->count;
     RITZ_OWN_ARRAY ritz_wanted *wanted = NULL;
 
-    RITZ_CHECK_NEW(wanted, count + RITZ_NUM_IO_FILES);
+    RITZ_CHECK_NEW(wanted, count + RITZ_NUM_IO_FILES + request->num_recoveries);
     for (int64_t k = 0; k < parts->count; k++) {
         ritz_part *part = &parts->part[k];
 
         wanted[k] = (ritz_wanted){part->spec, part->what, &part->matrix};
     }
-    count += ritz_io_files_want(request, files, wanted + count);
+    RITZ_CHECK(ritz_io_files_want(request, files, wanted, &count));
     return ritz_foreign_collect(count, wanted, request->sums);
 }
 

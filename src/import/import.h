@@ -179,19 +179,31 @@ enum {
     RITZ_NUM_IO_FILES
 };
 
-/* Matrices of inputs and outputs, as files contain them. */
+/* "NAME=F[,KIND]", and the matrix that F is. */
+typedef struct ritz_quantity_file {
+    char name[RITZ_NAME_SIZE];
+    char kind[RITZ_NAME_SIZE];
+    char *spec;
+    ritz_matrix matrix;
+} ritz_quantity_file;
+
+/* Matrices of inputs, outputs and quantities, as files contain them. */
 typedef struct ritz_io_files {
     const char *spec[RITZ_NUM_IO_FILES]; /* NULL: not given */
     ritz_matrix matrix[RITZ_NUM_IO_FILES];
+    int64_t num_quantities;
+    ritz_quantity_file *quantity;
     int64_t num_dofs; /* rows of mass and stiffness as they are read */
     ritz_dof *dof;    /* name of each row */
     /* rows are in this order, whatever their names in files */
     bool in_order;
 } ritz_io_files;
 
-/** List the files that the request needs. @return their number */
-int64_t ritz_io_files_want(const ritz_import_request *request,
-                           ritz_io_files *files, ritz_wanted *wanted);
+/** List the files that the request needs.
+ * @param[in,out] count  number of those in @p wanted, which has room */
+ritz_status ritz_io_files_want(const ritz_import_request *request,
+                               ritz_io_files *files, ritz_wanted *wanted,
+                               int64_t *count);
 
 /** Remember the names of all rows, before some of them are eliminated. */
 ritz_status ritz_io_files_name(const ritz_import_request *request,
@@ -209,6 +221,46 @@ ritz_status ritz_io_files_add(const ritz_import_request *request,
                               const ritz_extended *extended,
                               const ritz_io_files *files, ritz_io *io);
 void ritz_io_files_free(ritz_io_files *files);
+
+/* The dofs of a matrix, in its columns or its rows, and its number of inputs,
+ * outputs or quantities. */
+typedef struct ritz_layout {
+    int64_t num_dofs;
+    const ritz_dof *dof;
+    bool across; /* dofs are its columns */
+    int64_t count;
+} ritz_layout;
+
+/** @param[in] input  whether dofs must be rows
+ * @return RITZ_ERR_FORMAT if it is complex, or its size does not fit */
+ritz_status ritz_layout_find(const ritz_io_files *files,
+                             const ritz_matrix *matrix, const char *spec,
+                             bool input, ritz_layout *out);
+
+/* Rows of dofs that are none of the component. */
+enum { RITZ_ROW_FIXED = -1, RITZ_ROW_NONE = -2 };
+
+/** Extended row of each dof, or RITZ_ROW_...; to be freed. */
+ritz_status ritz_layout_rows(const ritz_layout *layout, const ritz_deck *deck,
+                             const ritz_extended *extended, int64_t **out);
+
+/** Refuse an entry of a dof that is no row. */
+ritz_status ritz_layout_refuse(const char *spec,
+                               const ritz_import_report *report,
+                               const ritz_extended *extended, ritz_dof dof);
+
+/** Take the texts of quantities apart. @return RITZ_ERR_ARGUMENT */
+ritz_status ritz_quantity_files_name(const ritz_import_request *request,
+                                     ritz_io_files *files);
+
+/** Make the quantities of the component from their files. */
+ritz_status ritz_quantity_files_add(const ritz_import_request *request,
+                                    const ritz_deck *deck,
+                                    const ritz_import_report *report,
+                                    const ritz_extended *extended,
+                                    const ritz_io_files *files,
+                                    ritz_component *component);
+void ritz_quantity_file_free(ritz_quantity_file *file);
 
 /**
  * Parse @p count names "a,b,c", each of which occurs once; without a list they

@@ -21,26 +21,28 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { IS_FIXED = -1, IS_NO_DOF = -2 };
-
 static const char *const WHAT[RITZ_NUM_IO_FILES] = {
     "input matrix", "output matrix", "velocity matrix", "acceleration matrix"};
 
-int64_t ritz_io_files_want(const ritz_import_request *request,
-                           ritz_io_files *files, ritz_wanted *wanted)
+ritz_status ritz_io_files_want(const ritz_import_request *request,
+                               ritz_io_files *files, ritz_wanted *wanted,
+                               int64_t *count)
 {
     const char *const spec[RITZ_NUM_IO_FILES] = {
         request->input_matrix, request->output_matrix, request->velocity_matrix,
         request->acceleration_matrix};
-    int64_t count = 0;
 
     for (int k = 0; k < RITZ_NUM_IO_FILES; k++) {
         files->spec[k] = spec[k];
         if (spec[k])
-            wanted[count++] =
+            wanted[(*count)++] =
                 (ritz_wanted){spec[k], WHAT[k], &files->matrix[k]};
     }
-    return count;
+    RITZ_CHECK_IN("recovery", ritz_quantity_files_name(request, files));
+    for (int64_t k = 0; k < files->num_quantities; k++)
+        wanted[(*count)++] = (ritz_wanted){files->quantity[k].spec, "recovery",
+                                           &files->quantity[k].matrix};
+    return RITZ_OK;
 }
 
 ritz_status ritz_io_files_name(const ritz_import_request *request,
@@ -57,42 +59,18 @@ void ritz_io_files_free(ritz_io_files *files)
 {
     for (int k = 0; k < RITZ_NUM_IO_FILES; k++)
         ritz_matrix_free(&files->matrix[k]);
+    RITZ_FREE_EACH(ritz_quantity_file, files->num_quantities, files->quantity);
     free(files->dof);
     *files = (ritz_io_files){0};
 }
 
 /* ---- sizes -------------------------------------------------------------- */
 
-/* The dofs of a matrix, in its columns or its rows, and its number of inputs or
- * outputs. */
-typedef struct layout {
-    int64_t num_dofs;
-    const ritz_dof *dof;
-    bool across; /* dofs are its columns */
-    int64_t count;
-} layout;
-
-static ritz_status find_layout(const ritz_io_files *files, int k, layout *out)
+static ritz_status find_layout(const ritz_io_files *files, int k,
+                               ritz_layout *out)
 {
-    const ritz_matrix *m = &files->matrix[k];
-    bool named = m->row && !files->in_order;
-    int64_t n = named ? m->A.nrow : files->num_dofs;
-    bool across = k != RITZ_FILE_B && !named && m->A.ncol == n;
-
-    RITZ_REFUSE_IF(m->imaginary, RITZ_ERR_FORMAT,
-                   "'%s' is complex, a real matrix is due", files->spec[k]);
-    RITZ_REFUSE_IF(!across && m->A.nrow != n, RITZ_ERR_FORMAT,
-                   "'%s' is %" PRId64 " x %" PRId64 ": %" PRId64
-                   " %s are due, one for each dof of the mass",
-                   files->spec[k], m->A.nrow, m->A.ncol, n,
-                   k == RITZ_FILE_B ? "rows" : "columns");
-    *out = (layout){.num_dofs = n,
-                    .dof = named ? m->row : files->dof,
-                    .across = across,
-                    .count = across ? m->A.nrow : m->A.ncol};
-    RITZ_REFUSE_IF(out->count == 0, RITZ_ERR_FORMAT, "'%s' is empty",
-                   files->spec[k]);
-    return RITZ_OK;
+    return ritz_layout_find(files, &files->matrix[k], files->spec[k],
+                            k == RITZ_FILE_B, out);
 }
 
 ritz_status ritz_io_files_size(const ritz_io_files *files, int64_t *inputs,
@@ -102,7 +80,7 @@ ritz_status ritz_io_files_size(const ritz_io_files *files, int64_t *inputs,
 
     *inputs = *outputs = 0;
     for (int k = 0; k < RITZ_NUM_IO_FILES; k++) {
-        layout is = {0};
+        ritz_layout is = {0};
 
         if (!files->spec[k])
             continue;
@@ -178,10 +156,10 @@ ritz_status ritz_import_channels(const char *list, char prefix, int64_t count,
 typedef struct filling {
     const char *spec;
     const ritz_matrix *matrix;
-    layout is;
+    ritz_layout is;
     const ritz_import_report *report;
     const ritz_extended *extended;
-    int64_t *row;   /* extended row of each dof of the matrix, or IS_... */
+    int64_t *row;   /* of each dof of the matrix: ritz_layout_rows() */
     int64_t stride; /* of dofs in `into`; its channels are `step` apart */
     int64_t step;
     double *into;
@@ -192,44 +170,16 @@ static void filling_free(filling *it)
     free(it->row);
 }
 
-static ritz_status find_rows(const ritz_deck *deck, filling *it)
-{
-    RITZ_CHECK_NEW(it->row, it->is.num_dofs);
-    for (int64_t i = 0; i < it->is.num_dofs; i++) {
-        ritz_dof dof = it->is.dof[i];
-
-        it->row[i] = ritz_roster_row(&it->extended->roster, dof);
-        if (it->row[i] < 0)
-            it->row[i] = ritz_dof_among(dof, deck->num_fixed, deck->fixed)
-                             ? IS_FIXED
-                             : IS_NO_DOF;
-    }
-    return RITZ_OK;
-}
-
-static ritz_status refuse_dof(const filling *it, ritz_dof dof)
-{
-    const ritz_import_report *report = it->report;
-    char name[RITZ_DOF_NAME_SIZE];
-
-    for (int64_t k = 0; k < report->num_removed; k++)
-        RITZ_REFUSE_IF(ritz_dof_compare(&report->removed[k], &dof) == 0,
-                       RITZ_ERR_FORMAT,
-                       "'%s' has an entry for '%s', which has neither "
-                       "stiffness nor mass",
-                       it->spec, ritz_dof_name(dof, name));
-    return ritz_context(ritz_roster_miss(&it->extended->roster, dof), it->spec);
-}
-
 static ritz_status add_entry(const filling *it, int64_t i, int64_t channel,
                              double value)
 {
     RITZ_REFUSE_IF(!isfinite(value), RITZ_ERR_FORMAT,
                    "'%s' holds a value that is not finite", it->spec);
-    if (value == 0.0 || it->row[i] == IS_FIXED)
+    if (value == 0.0 || it->row[i] == RITZ_ROW_FIXED)
         return RITZ_OK;
-    if (it->row[i] == IS_NO_DOF)
-        return refuse_dof(it, it->is.dof[i]);
+    if (it->row[i] == RITZ_ROW_NONE)
+        return ritz_layout_refuse(it->spec, it->report, it->extended,
+                                  it->is.dof[i]);
     ritz_extended_add(it->extended, it->row[i], value, it->stride,
                       it->into + it->step * channel);
     return RITZ_OK;
@@ -297,7 +247,7 @@ ritz_status ritz_io_files_add(const ritz_import_request *request,
         it.into =
             to->val + it.step * (is_B ? to->ncol - inputs : to->nrow - outputs);
         RITZ_CHECK(find_layout(files, k, &it.is));
-        RITZ_CHECK(find_rows(deck, &it));
+        RITZ_CHECK(ritz_layout_rows(&it.is, deck, extended, &it.row));
         RITZ_CHECK_IN(WHAT[k], add_entries(&it));
     }
     return RITZ_OK;

@@ -592,5 +592,7 @@ ritz_status ritz_import_attach(const ritz_import_request *request,
     RITZ_CHECK_IN("port", add_ports(request, report, &extended, component));
     RITZ_CHECK(add_io(request, deck, report, &extended, files, &component->io));
     RITZ_CHECK_IN("damper", add_dampers(request, &extended, component));
-    return RITZ_OK;
+    return ritz_context(ritz_quantity_files_add(request, deck, report,
+                                                &extended, files, component),
+                        "recovery");
 }

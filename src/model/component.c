@@ -181,6 +181,8 @@ static ritz_status settle_rest(ritz_component *component)
     RITZ_CHECK_IN("recovery",
                   ritz_recovery_check(&component->recovery, component->num_dofs,
                                       component->dof));
+    RITZ_CHECK(ritz_quantities_check(component->num_quantities,
+                                     component->quantity, component->num_dofs));
     return ritz_dampers_check(&component->dampers, component->num_dofs);
 }
 
@@ -270,6 +272,8 @@ void ritz_component_free(ritz_component *component)
     free(component->port);
     ritz_io_free(&component->io);
     ritz_recovery_free(&component->recovery);
+    RITZ_FREE_EACH(ritz_quantity, component->num_quantities,
+                   component->quantity);
     ritz_dampers_free(&component->dampers);
     *component = (ritz_component){0};
 }

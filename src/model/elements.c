@@ -44,6 +44,8 @@ ritz_status ritz_elements_copy(const ritz_elements *elements,
     RITZ_CHECK_COPY(copy.kind, elements->kind, n);
     RITZ_CHECK_COPY(copy.first, elements->first, n + 1);
     RITZ_CHECK_COPY(copy.grid, elements->grid, elements->first[n]);
+    if (elements->id)
+        RITZ_CHECK_COPY(copy.id, elements->id, n);
     RITZ_MOVE(*out, copy);
     return RITZ_OK;
 }
@@ -72,6 +74,8 @@ int64_t ritz_elements_keep(ritz_elements *elements, int64_t count,
         memmove(elements->grid + end, elements->grid + from,
                 (size_t)size * sizeof *elements->grid);
         elements->kind[kept] = elements->kind[k];
+        if (elements->id)
+            elements->id[kept] = elements->id[k];
         elements->first[kept++] = end;
         end += size;
     }
@@ -111,6 +115,6 @@ ritz_status ritz_elements_check(const ritz_elements *elements, int64_t count,
 
 void ritz_elements_free(ritz_elements *elements)
 {
-    RITZ_FREE(elements->kind, elements->first, elements->grid);
+    RITZ_FREE(elements->kind, elements->first, elements->grid, elements->id);
     *elements = (ritz_elements){0};
 }

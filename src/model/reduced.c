@@ -159,6 +159,15 @@ static ritz_status refuse_basis(const ritz_component *component,
     return RITZ_OK;
 }
 
+static ritz_status project_quantities(int64_t count,
+                                      const ritz_quantity *quantity,
+                                      const ritz_dense *T, ritz_reduced *out)
+{
+    RITZ_CHECK(ritz_quantities_project(count, quantity, T, &out->quantity));
+    out->num_quantities = count;
+    return RITZ_OK;
+}
+
 ritz_status ritz_congruences_reduce(const ritz_component *component,
                                     const ritz_basis *basis,
                                     ritz_congruences *sums, ritz_reduced *out)
@@ -185,6 +194,8 @@ ritz_status ritz_congruences_reduce(const ritz_component *component,
     RITZ_CHECK(ritz_dampers_project(&component->dampers, T, &reduced.dampers));
     RITZ_CHECK(map_ports(component, T, &reduced));
     RITZ_CHECK(ritz_io_project(&component->io, T, &reduced.io));
+    RITZ_CHECK(project_quantities(component->num_quantities,
+                                  component->quantity, T, &reduced));
     RITZ_MOVE(*out, reduced);
     return RITZ_OK;
 }
@@ -256,6 +267,8 @@ ritz_status ritz_reduced_project(const ritz_reduced *reduced,
     RITZ_CHECK(ritz_dampers_project(&reduced->dampers, V, &second.dampers));
     RITZ_CHECK(project_ports(reduced, V, &second));
     RITZ_CHECK(ritz_io_project(&reduced->io, V, &second.io));
+    RITZ_CHECK(project_quantities(reduced->num_quantities, reduced->quantity, V,
+                                  &second));
     RITZ_CHECK(
         ritz_invariants_project(&reduced->invariants, V, &second.invariants));
     if (reduced->T.val) {
@@ -299,6 +312,7 @@ void ritz_reduced_free(ritz_reduced *reduced)
     ritz_columns_free(&reduced->columns);
     RITZ_FREE_EACH(ritz_port_map, reduced->num_ports, reduced->port);
     ritz_io_free(&reduced->io);
+    RITZ_FREE_EACH(ritz_quantity, reduced->num_quantities, reduced->quantity);
     ritz_invariants_free(&reduced->invariants);
     ritz_dense_free(&reduced->T);
     free(reduced->dof);

@@ -377,6 +377,35 @@ static ritz_status estimate_model(const model *full, ritz_basis *basis,
     return ritz_estimate(&full->component, &made, &given->estimate, reduced);
 }
 
+/* Mode acceleration, if it is asked for, of what has not been reduced before. */
+static ritz_status correct_rows(cli_run *run, const model *full,
+                                const ritz_basis *basis,
+                                const reduce_options *given,
+                                ritz_reduced *reduced)
+{
+    ritz_mode_accelerations made = {0};
+
+    if (!given->recovery || strcmp(given->recovery, "acceleration") != 0)
+        return RITZ_OK;
+    RITZ_REFUSE_IF(given->project, RITZ_ERR_ARGUMENT,
+                   "--recovery acceleration factors K, which --engine slepc "
+                   "does not do");
+    RITZ_REFUSE_IF(full->kind != MODEL_COMPONENT, RITZ_ERR_ARGUMENT,
+                   "'%s' was reduced before: it keeps the mode acceleration "
+                   "that it has, and gets no other",
+                   run->operand[0]);
+    RITZ_CHECK_IN(run->operand[0], ritz_mode_acceleration(
+                                       &full->component, &basis->T,
+                                       given->recovery_ports, reduced, &made));
+    sink_set(run, "mode_accelerations,free_motions,rigid_rows", "%ld %ld %g",
+             made.count, made.motions, made.rigid);
+    if (*made.reason)
+        cli_warn(run, "%ld of %ld quantities have no mode acceleration: %s",
+                 reduced->num_quantities - made.count, reduced->num_quantities,
+                 made.reason);
+    return RITZ_OK;
+}
+
 static ritz_status reduce_to_matrices(cli_run *run, const model *full,
                                       ritz_basis *basis,
                                       const reduce_options *given,
@@ -388,6 +417,7 @@ static ritz_status reduce_to_matrices(cli_run *run, const model *full,
     const ritz_columns *c = &reduced->columns;
 
     RITZ_CHECK_IN(what, project_component(full, basis, given, reduced));
+    RITZ_CHECK(correct_rows(run, full, basis, given, reduced));
     if (!asked_for(given, "none"))
         RITZ_CHECK_IN(what, estimate_model(full, basis, given, early, reduced));
     if (given->without_basis)
@@ -481,11 +511,15 @@ ritz_status reduce_run(cli_run *run, reduce_options *given)
         given->without_basis && full.kind == MODEL_STATES, RITZ_ERR_ARGUMENT,
         "a reduced state space keeps no basis, --without-basis is for "
         "components");
+    if (given->recovery_ports &&
+        (!given->recovery || strcmp(given->recovery, "acceleration") != 0))
+        cli_refuse(run->program,
+                   "--recovery-ports are of --recovery acceleration");
     given->estimate.frequencies = asked_for(given, "frequency");
     if (full.kind == MODEL_STATES || basis.basis.states || basis.basis.W.val) {
-        RITZ_REFUSE_IF(given->estimates, RITZ_ERR_ARGUMENT,
-                       "'%s' reduces to a state space, --estimates is for "
-                       "components",
+        RITZ_REFUSE_IF(given->estimates || given->recovery, RITZ_ERR_ARGUMENT,
+                       "'%s' reduces to a state space, --estimates and "
+                       "--recovery are for components",
                        what);
         return reduce_to_states(run, &full, &basis.basis);
     }

@@ -224,6 +224,20 @@ static void describe_recovery(cli_run *run, const ritz_recovery *recovery)
         cli_say(run, "%s", grids > SHOWN ? ", ..." : "");
 }
 
+/* Quantities to recover, a line each. */
+static void describe_quantities(cli_run *run, int64_t count,
+                                const ritz_quantity *quantity)
+{
+    SINK_ITEMS(run, "quantities", k, count) {
+        const ritz_quantity *q = &quantity[k];
+
+        sink_set(run, "mode_acceleration", "%d", q->Q.val != NULL);
+        sink_field(run, k > 0 ? "" : "quantities", "name,rows,kind",
+                   "%-20s %ld rows of kind %s%s", q->name, q->count, q->kind,
+                   q->Q.val ? ", by mode acceleration too" : "");
+    }
+}
+
 ritz_status describe_component(cli_run *run, const ritz_component *c)
 {
     int64_t scalar = 0;
@@ -256,6 +270,7 @@ ritz_status describe_component(cli_run *run, const ritz_component *c)
     describe_damping(run, c->damping);
     describe_dampers(run, &c->dampers);
     describe_recovery(run, &c->recovery);
+    describe_quantities(run, c->num_quantities, c->quantity);
     if (c->digits > 0.0)
         sink_field(run, "digits", "", "%g significant", c->digits);
     if (c->asymmetry > 0.0)
@@ -507,6 +522,7 @@ ritz_status describe_reduced(cli_run *run, const ritz_reduced *r)
     describe_damping(run, r->damping);
     describe_dampers(run, &r->dampers);
     describe_recovery(run, &r->recovery);
+    describe_quantities(run, r->num_quantities, r->quantity);
     describe_inertia(run, &r->inertia);
     start_ports(run);
     for (int64_t k = 0; k < r->num_ports; k++)

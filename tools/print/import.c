@@ -24,6 +24,20 @@ static ritz_status take_load(cli_run *run, const char *spec)
     return take_matrix(run, file);
 }
 
+/* Remember the file of "NAME=F[,KIND]", or of "NAME=FILE". */
+static ritz_status take_recovery(cli_run *run, const char *text, bool matrix)
+{
+    RITZ_OWN_ARRAY char *spec = NULL;
+
+    if (!matrix) {
+        const char *equals = strchr(text, '=');
+
+        return equals ? cli_input(run, equals + 1) : RITZ_OK;
+    }
+    RITZ_CHECK_IN("--recovery", ritz_import_recovery_spec(text, &spec));
+    return take_matrix(run, spec);
+}
+
 static ritz_status take_inputs(cli_run *run, const ritz_import_request *request)
 {
     double number = 0.0;
@@ -45,6 +59,10 @@ static ritz_status take_inputs(cli_run *run, const ritz_import_request *request)
         RITZ_CHECK(take_matrix(run, matrices[k]));
     for (int64_t k = 0; k < request->num_loads; k++)
         RITZ_CHECK(take_load(run, request->load[k]));
+    for (int64_t k = 0; k < request->num_recoveries; k++)
+        RITZ_CHECK(take_recovery(run, request->recovery[k], true));
+    for (int64_t k = 0; k < request->num_recovery_rows; k++)
+        RITZ_CHECK(take_recovery(run, request->recovery_rows[k], false));
     if (request->bulk)
         RITZ_CHECK(cli_input(run, request->bulk));
     if (request->dofs)
@@ -174,6 +192,10 @@ static void take_lists(import_options *lists)
     request->input = lists->input.text;
     request->num_outputs = lists->output.count;
     request->output = lists->output.text;
+    request->num_recoveries = lists->recovery.count;
+    request->recovery = lists->recovery.text;
+    request->num_recovery_rows = lists->recovery_rows.count;
+    request->recovery_rows = lists->recovery_rows.text;
     request->num_dampers = lists->damper.count;
     request->damper = lists->damper.text;
 }

@@ -47,6 +47,9 @@ typedef struct reduce_options {
     bool without_basis;
     model_options model;   /* configuration or columns, and damping */
     const char *estimates; /* "all", "frequency" or "none"; NULL: all */
+    const char
+        *recovery; /* "displacement" or "acceleration"; NULL: the first */
+    const char *recovery_ports; /* of mode acceleration; NULL: all */
     /* "auto" or "slepc"; only shown by --help: libexec_is_asked() reads it
        before options are parsed */
     const char *engine;
@@ -182,6 +185,7 @@ ritz_status responses_run(cli_run *run, const response_options *given);
 typedef struct import_options {
     cli_list load, port, rigid, averaged, input, output, damper;
     const char *superelement; /* file from which matrices are requested */
+    cli_list recovery, recovery_rows;
     ritz_import_request request;
     ritz_import_space_request space;
 } import_options;

@@ -19,6 +19,12 @@ int reduce_main(int argc, char **argv,
         CLI_WORD("engine", &given.engine, "auto|slepc",
                  "what projects: this process, or those of mpirun (see "
                  "docs/parallel.md) [auto]"),
+        CLI_WORD("recovery", &given.recovery, "displacement|acceleration",
+                 "rows of quantities by modes alone, or by mode acceleration "
+                 "too, which factors K [displacement]"),
+        CLI_TEXT("recovery-ports", &given.recovery_ports, "PORT[,PORT]",
+                 "with acceleration: ports on which forces act that are no "
+                 "inputs, '' for none [all]"),
         CLI_FLAG("without-basis", &given.without_basis,
                  "leave out T and the full mesh, for a smaller file"),
         {0},

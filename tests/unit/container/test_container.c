@@ -105,6 +105,33 @@ static void same_dampers(const ritz_dampers *a, const ritz_dampers *b)
     same_dense(&a->B, &b->B);
 }
 
+static void same_quantities(int64_t count, const ritz_quantity *a,
+                            int64_t count_b, const ritz_quantity *b)
+{
+    assert_int_equal(count, count_b);
+    for (int64_t k = 0; k < count; k++) {
+        assert_string_equal(a[k].name, b[k].name);
+        assert_string_equal(a[k].kind, b[k].kind);
+        assert_int_equal(a[k].count, b[k].count);
+        assert_same(a[k].place, b[k].place, a[k].count, 8);
+        assert_same(a[k].part, b[k].part, a[k].count, RITZ_NAME_SIZE);
+        same_sparse(&a[k].S, &b[k].S);
+        same_dense(&a[k].ST, &b[k].ST);
+        same_dense(&a[k].Q, &b[k].Q);
+        same_dense(&a[k].V, &b[k].V);
+        same_dense(&a[k].A, &b[k].A);
+        same_dense(&a[k].F, &b[k].F);
+        same_dense(&a[k].H, &b[k].H);
+    }
+}
+
+static void same_elements(const ritz_elements *a, const ritz_elements *b)
+{
+    assert_int_equal(a->count, b->count);
+    assert_same(a->kind, b->kind, a->count, sizeof *a->kind);
+    assert_same(a->id, b->id, a->count, sizeof *a->id);
+}
+
 static void same_grids(const ritz_grids *a, const ritz_grids *b)
 {
     assert_int_equal(a->count, b->count);
@@ -177,6 +204,8 @@ static void compare_components(bool full)
     same_sparse(&a.K4, &b.K4);
     same_dampers(&a.dampers, &b.dampers);
     same_recovery(&a.recovery, &b.recovery);
+    same_quantities(a.num_quantities, a.quantity, b.num_quantities, b.quantity);
+    same_elements(&a.elements, &b.elements);
     assert_int_equal(a.num_loads, b.num_loads);
     for (int64_t k = 0; k < a.num_loads; k++) {
         assert_string_equal(a.load[k].name, b.load[k].name);
@@ -259,6 +288,8 @@ static void compare_reduced(bool full)
     same_dense(&a.K4, &b.K4);
     same_dampers(&a.dampers, &b.dampers);
     same_recovery(&a.recovery, &b.recovery);
+    same_quantities(a.num_quantities, a.quantity, b.num_quantities, b.quantity);
+    same_elements(&a.elements, &b.elements);
     same_dense(&a.T, &b.T);
     same_columns(&a.columns, &b.columns);
     same_origin(&a.origin, &b.origin);
@@ -393,6 +424,10 @@ static void a_simulation_comes_back(void **)
     assert_same(a.dissipated, b.dissipated, a.count, 8);
     assert_same(a.work, b.work, a.count, 8);
     assert_same(a.balance, b.balance, a.count, 8);
+    assert_int_equal(a.num_coordinates, b.num_coordinates);
+    assert_same(a.q, b.q, a.count * a.num_coordinates, 8);
+    assert_same(a.v, b.v, a.count * a.num_coordinates, 8);
+    assert_same(a.a, b.a, a.count * a.num_coordinates, 8);
     assert_near(a.step, b.step, 0.0);
     assert_string_equal(a.integrator, b.integrator);
     assert_string_equal(a.hold, b.hold);
@@ -424,10 +459,6 @@ static void compare_state_spaces(bool full)
 }
 
 static void a_state_space_comes_back(void **)
-    assert_int_equal(a.num_coordinates, b.num_coordinates);
-    assert_same(a.q, b.q, a.count * a.num_coordinates, 8);
-    assert_same(a.v, b.v, a.count * a.num_coordinates, 8);
-    assert_same(a.a, b.a, a.count * a.num_coordinates, 8);
 {
     compare_state_spaces(true);
     compare_state_spaces(false);
