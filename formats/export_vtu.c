@@ -7,6 +7,7 @@
 #include "formats/sink.h"
 
 #include <inttypes.h>
+#include <math.h>
 
 static void begin_array(FILE *file, const char *type, const char *name,
                         int width)
@@ -58,15 +59,34 @@ static void print_fields(FILE *file, const ritz_shapes *s)
     fputs("</PointData>\n", file);
 }
 
-/* What the file is made of. */
-typedef struct vtu_parts {
-    const ritz_shapes *shapes;
-    const char *certificate;
-} vtu_parts;
-
-static ritz_status print_grid(FILE *file, const void *what)
+/* Values of cells, "nan" where there is none. */
+static void print_cell_fields(FILE *file, const ritz_shapes *s)
 {
-    const vtu_parts *parts = what;
+    const int64_t count = s->cells.count;
+
+    if (s->num_fields == 0)
+        return;
+    fputs("<CellData>\n", file);
+    for (int64_t k = 0; k < s->num_fields; k++) {
+        begin_array(file, "Float64", s->field[k], 1);
+        for (int64_t i = 0; i < count; i++) {
+            double value = s->of_cell[k * count + i];
+
+            if (isnan(value))
+                fputs("nan\n", file);
+            else
+                fprintf(file, "%.17g\n", value);
+        }
+        end_array(file);
+    }
+    if (s->cells.id)
+        print_wholes(file, "element", count, s->cells.id);
+    fputs("</CellData>\n", file);
+}
+
+ritz_status ritz_vtu_print(FILE *file, const void *what)
+{
+    const ritz_vtu_parts *parts = what;
     const ritz_shapes *s = parts->shapes;
     const ritz_elements *cells = &s->cells;
 
@@ -79,6 +99,7 @@ static ritz_status print_grid(FILE *file, const void *what)
             "\">\n",
             s->num_points, cells->count);
     print_fields(file, s);
+    print_cell_fields(file, s);
     fputs("<Points>\n", file);
     print_vectors(file, "Points", s->num_points, s->position);
     fputs("</Points>\n<Cells>\n", file);
@@ -94,11 +115,11 @@ static ritz_status write_shapes(const ritz_export_object *object,
                                 ritz_export_report *report)
 {
     RITZ_OWN_ARRAY char *certificate = NULL;
-    vtu_parts parts = {object->shapes, NULL};
+    ritz_vtu_parts parts = {object->shapes, NULL};
 
     RITZ_CHECK(ritz_certificate(object, request->stamp, &certificate));
     parts.certificate = certificate;
-    RITZ_CHECK(ritz_sink_write(request->output, print_grid, &parts));
+    RITZ_CHECK(ritz_sink_write(request->output, ritz_vtu_print, &parts));
     return ritz_shapes_say(object->shapes, report);
 }
 

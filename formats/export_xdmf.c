@@ -60,30 +60,33 @@ static ritz_status write_field(hid_t file, const char *word, int64_t j,
                          ritz_dense_col(of, j));
 }
 
-/* Both files: the XML refers to the other by its path. */
-typedef struct xdmf_pair {
-    const ritz_shapes *shapes;
-    int64_t length;     /* of the list of cells */
-    const char *beside; /* path of the numbers */
-    const char *certificate;
-} xdmf_pair;
-
-static ritz_status write_heavy(hid_t file, const void *what)
+/* Length of the list of cells. */
+static int64_t list_length(const ritz_shapes *s)
 {
-    const xdmf_pair *pair = what;
-    const ritz_shapes *s = pair->shapes;
+    return list_cells(&s->cells, NULL);
+}
+
+ritz_status ritz_xdmf_write_mesh(hid_t file, const ritz_shapes *s)
+{
+    const int64_t length = list_length(s);
     RITZ_OWN_ARRAY int64_t *list = NULL;
 
-    RITZ_CHECK_NEW(list, pair->length);
+    RITZ_CHECK_NEW(list, length);
     (void)list_cells(&s->cells, list);
     RITZ_CHECK(ritz_h5_write(file, "points", H5T_IEEE_F64LE,
                              ritz_h5_table(s->num_points, 3), s->position));
     RITZ_CHECK(ritz_h5_write(file, "grids", H5T_STD_I64LE,
                              ritz_h5_vector(s->num_points), s->id));
-    RITZ_CHECK(ritz_h5_write(file, "cells", H5T_STD_I64LE,
-                             s->meshed ? ritz_h5_vector(pair->length)
-                                       : ritz_h5_table(pair->length, 1),
-                             list));
+    return ritz_h5_write(
+        file, "cells", H5T_STD_I64LE,
+        s->meshed ? ritz_h5_vector(length) : ritz_h5_table(length, 1), list);
+}
+
+static ritz_status write_heavy(hid_t file, const void *what)
+{
+    const ritz_shapes *s = what;
+
+    RITZ_CHECK(ritz_xdmf_write_mesh(file, s));
     for (int64_t j = 0; j < s->count; j++) {
         RITZ_CHECK(write_field(file, "translations", j, s, &s->u));
         if (s->turn.val)
@@ -107,18 +110,50 @@ static void refer_to_set(FILE *file, const char *heavy, const char *type,
     fprintf(file, ":/%s</DataItem>\n", name);
 }
 
+void ritz_xdmf_put_field(FILE *file, const char *heavy,
+                         const ritz_xdmf_field *field)
+{
+    fputs("<Attribute Name=\"", file);
+    ritz_xml_put(file, field->name);
+    fprintf(file, "\" AttributeType=\"%s\" Center=\"%s\">\n", field->kind,
+            field->centre);
+    refer_to_set(file, heavy, field->type, field->rows, field->columns,
+                 field->set);
+    fputs("</Attribute>\n", file);
+}
+
+void ritz_xdmf_put_mesh(FILE *file, const char *heavy, const ritz_shapes *s)
+{
+    fprintf(file,
+            "<Topology TopologyType=\"%s\" NumberOfElements=\"%" PRId64
+            "\"%s>\n",
+            s->meshed ? "Mixed" : "Polyvertex", s->cells.count,
+            s->meshed ? "" : " NodesPerElement=\"1\"");
+    refer_to_set(file, heavy, "Int", list_length(s), s->meshed ? 0 : 1,
+                 "cells");
+    fputs("</Topology>\n<Geometry GeometryType=\"XYZ\">\n", file);
+    refer_to_set(file, heavy, "Float", s->num_points, 3, "points");
+    fputs("</Geometry>\n", file);
+}
+
 static void print_field(FILE *file, const char *heavy, const ritz_shapes *s,
                         int64_t j, const char *word, const char *beside)
 {
-    char name[48];
+    char set[48], name[RITZ_NAME_SIZE + 16];
 
-    snprintf(name, sizeof name, "%s_%" PRId64, word, j + 1);
-    fputs("<Attribute Name=\"", file);
-    ritz_xml_put(file, s->name[j]);
-    fprintf(file, "%s\" AttributeType=\"Vector\" Center=\"Node\">\n", beside);
-    refer_to_set(file, heavy, "Float", s->num_points, 3, name);
-    fputs("</Attribute>\n", file);
+    snprintf(set, sizeof set, "%s_%" PRId64, word, j + 1);
+    snprintf(name, sizeof name, "%s%s", s->name[j], beside);
+    ritz_xdmf_put_field(file, heavy,
+                        &(ritz_xdmf_field){name, "Vector", "Node", "Float", set,
+                                           s->num_points, 3});
 }
+
+/* The XML refers to the other file by its path. */
+typedef struct xdmf_pair {
+    const ritz_shapes *shapes;
+    const char *beside; /* path of the numbers */
+    const char *certificate;
+} xdmf_pair;
 
 static ritz_status print_light(FILE *file, const void *what)
 {
@@ -131,33 +166,24 @@ static ritz_status print_light(FILE *file, const void *what)
     fputs("<Xdmf Version=\"3.0\">\n<Domain>\n"
           "<Grid Name=\"shapes\" GridType=\"Uniform\">\n",
           file);
-    fprintf(file,
-            "<Topology TopologyType=\"%s\" NumberOfElements=\"%" PRId64
-            "\"%s>\n",
-            s->meshed ? "Mixed" : "Polyvertex", s->cells.count,
-            s->meshed ? "" : " NodesPerElement=\"1\"");
-    refer_to_set(file, heavy, "Int", pair->length, s->meshed ? 0 : 1, "cells");
-    fputs("</Topology>\n<Geometry GeometryType=\"XYZ\">\n", file);
-    refer_to_set(file, heavy, "Float", s->num_points, 3, "points");
-    fputs("</Geometry>\n", file);
+    ritz_xdmf_put_mesh(file, heavy, s);
     for (int64_t j = 0; j < s->count; j++) {
         print_field(file, heavy, s, j, "translations", "");
         if (s->turn.val)
             print_field(file, heavy, s, j, "rotations", ", rotations");
     }
-    fputs("<Attribute Name=\"grid\" AttributeType=\"Scalar\" "
-          "Center=\"Node\">\n",
-          file);
-    refer_to_set(file, heavy, "Int", s->num_points, 0, "grids");
-    fputs("</Attribute>\n</Grid>\n</Domain>\n</Xdmf>\n", file);
+    ritz_xdmf_put_field(file, heavy,
+                        &(ritz_xdmf_field){"grid", "Scalar", "Node", "Int",
+                                           "grids", s->num_points, 0});
+    fputs("</Grid>\n</Domain>\n</Xdmf>\n", file);
     return RITZ_OK;
 }
 
-/* "shapes.xdmf.h5", in which readers look for the last ':' alone. */
-static ritz_status name_heavy(const char *output, char **out)
+ritz_status ritz_xdmf_name_heavy(const char *output, char **out)
 {
     char *heavy = NULL;
 
+    /* readers look for the last ':' alone */
     RITZ_REFUSE_IF(strchr(ritz_path_name(output), ':'), RITZ_ERR_ARGUMENT,
                    "'%s' holds ':', which parts file and data set in XDMF",
                    output);
@@ -176,15 +202,15 @@ static ritz_status write_shapes(const ritz_export_object *object,
     const ritz_shapes *shapes = object->shapes;
     RITZ_OWN(ritz_draft) heavy = {0}, light = {0};
     RITZ_OWN_ARRAY char *beside = NULL, *certificate = NULL;
-    xdmf_pair pair = {shapes, list_cells(&shapes->cells, NULL), NULL, NULL};
+    xdmf_pair pair = {shapes, NULL, NULL};
 
-    RITZ_CHECK(name_heavy(request->output, &beside));
+    RITZ_CHECK(ritz_xdmf_name_heavy(request->output, &beside));
     RITZ_CHECK(ritz_certificate(object, request->stamp, &certificate));
     pair.beside = beside;
     pair.certificate = certificate;
     RITZ_CHECK_IN(beside, ritz_draft_new(beside, &heavy));
     RITZ_CHECK_IN(request->output, ritz_draft_new(request->output, &light));
-    RITZ_CHECK(ritz_sink_fill_h5(&heavy, write_heavy, &pair));
+    RITZ_CHECK(ritz_sink_fill_h5(&heavy, write_heavy, shapes));
     RITZ_CHECK(ritz_sink_fill(&light, print_light, &pair));
     RITZ_CHECK(ritz_draft_publish(&heavy));
     RITZ_CHECK(ritz_draft_publish(&light));

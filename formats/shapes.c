@@ -264,11 +264,16 @@ static body body_of_component(const ritz_component *component)
                   &component->grids, &component->elements};
 }
 
+static body body_of_reduced(const ritz_reduced *reduced)
+{
+    return (body){reduced->num_dofs, reduced->dof, &reduced->recovery,
+                  &reduced->grids, &reduced->elements};
+}
+
 ritz_status ritz_shapes_of_reduced(const ritz_reduced *reduced,
                                    const char *list, ritz_shapes *out)
 {
-    const body whole = {reduced->num_dofs, reduced->dof, &reduced->recovery,
-                        &reduced->grids, &reduced->elements};
+    const body whole = body_of_reduced(reduced);
     RITZ_OWN(ritz_shapes) shapes = {0};
     RITZ_OWN(ritz_structure) model = {0};
     RITZ_OWN(ritz_dense) Delta = {0}, Phi = {0}, T = {0};
@@ -457,8 +462,7 @@ ritz_status ritz_shapes_of_system(const ritz_system *system,
     RITZ_CHECK_NEW(part.at, part.count);
     for (int64_t c = 0; c < part.count; c++) {
         const ritz_reduced *b = bodies[c];
-        const body whole = {b->num_dofs, b->dof, &b->recovery, &b->grids,
-                            &b->elements};
+        const body whole = body_of_reduced(b);
         RITZ_OWN(ritz_dense) q = {0}, U = {0};
 
         RITZ_CHECK(ritz_dense_mul(&at->P[c], &Phi, &q));
@@ -548,9 +552,27 @@ ritz_status ritz_shapes_of_basis(const ritz_basis *basis,
     return RITZ_OK;
 }
 
+ritz_status ritz_shapes_of_motion(const ritz_reduced *reduced, ritz_shapes *out)
+{
+    const body whole = body_of_reduced(reduced);
+    RITZ_OWN(ritz_shapes) shapes = {0};
+    RITZ_OWN(ritz_dense) T = {0};
+    RITZ_OWN(mode_choice) which = {0};
+
+    RITZ_REFUSE_IF(!reduced->T.val || !reduced->dof, RITZ_ERR_ARGUMENT,
+                   "it was reduced --without-basis, which holds the shapes");
+    RITZ_CHECK(choose_modes(NULL, "column", reduced->T.ncol, &which));
+    RITZ_CHECK(pick_shapes(&reduced->T, &which, &T, &shapes));
+    memcpy(shapes.units, reduced->units, sizeof shapes.units);
+    RITZ_CHECK(place_shapes(&whole, &T, &shapes));
+    RITZ_MOVE(*out, shapes);
+    return RITZ_OK;
+}
+
 void ritz_shapes_free(ritz_shapes *shapes)
 {
-    RITZ_FREE(shapes->id, shapes->position, shapes->name, shapes->mode);
+    RITZ_FREE(shapes->id, shapes->position, shapes->name, shapes->mode,
+              shapes->field, shapes->of_cell);
     ritz_elements_free(&shapes->cells);
     ritz_dense_free(&shapes->u);
     ritz_dense_free(&shapes->turn);

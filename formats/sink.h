@@ -71,6 +71,39 @@ ritz_status ritz_export_demand_si(const char *units, const char *program);
 /** @p n rows of as many numbers, with 17 digits; A {0}: zeros. */
 void ritz_rows_put(FILE *file, const ritz_dense *A, int64_t n);
 
+/* What a VTK unstructured grid is made of. */
+typedef struct ritz_vtu_parts {
+    const ritz_shapes *shapes;
+    const char *certificate;
+} ritz_vtu_parts;
+
+/** Put a ritz_vtu_parts as a VTK unstructured grid. */
+ritz_status ritz_vtu_print(FILE *file, const void *what);
+
+/*
+ * XDMF: the topology and the geometry of shapes, whose numbers are data sets
+ * "cells" and "points" of an HDF5 file.
+ */
+
+/** Write "points", "grids" and "cells" of shapes. */
+ritz_status ritz_xdmf_write_mesh(hid_t file, const ritz_shapes *shapes);
+
+/** Put <Topology> and <Geometry>. @param[in] heavy  name of that file */
+void ritz_xdmf_put_mesh(FILE *file, const char *heavy,
+                        const ritz_shapes *shapes);
+
+/** Put an attribute that refers to data set @p set of @p rows x @p columns, 0
+ * for a vector. @param[in] kind  "Vector" or "Scalar", then "Node" or "Cell" */
+typedef struct ritz_xdmf_field {
+    const char *name, *kind, *centre, *type, *set;
+    int64_t rows, columns;
+} ritz_xdmf_field;
+void ritz_xdmf_put_field(FILE *file, const char *heavy,
+                         const ritz_xdmf_field *field);
+
+/** "shapes.xdmf.h5". @return RITZ_ERR_ARGUMENT if the name holds ':' */
+ritz_status ritz_xdmf_name_heavy(const char *output, char **out);
+
 /** @p text with markup as entities and control characters as '?'. */
 void ritz_xml_put(FILE *file, const char *text);
 

@@ -44,6 +44,8 @@ TABLES = {
     'formats/formats.c': 'ritz_formats',
     'formats/decks.c': 'ritz_decks',
     'formats/exporters.c': 'ritz_exporters',
+    'formats/histories.c': 'ritz_history_formats',
+    'formats/series_formats.c': 'ritz_series_formats',
     'tools/chart/charts.c': 'chart_kinds',
 }
 

@@ -26,6 +26,7 @@ static const struct verb {
     {"compare", "scene -> two-stage reduction over all configurations"},
     {"frf", "frequency response of any model, zeros, closed loops"},
     {"simulate", "time response of any model, and what a second of it costs"},
+    {"recover", "reduced coordinates over time -> stresses, motion, maxima"},
     {"poles", "damped poles of any model, dampers retuned or scanned"},
     {"fit", "component or scene + tolerance -> the smallest model that holds"},
     {"verify", "full against reduced: every error, pass or fail"},

@@ -8,6 +8,7 @@
 
 #include <ritz/model.h>
 #include <ritz/ranking.h>
+#include <ritz/recover.h>
 #include <ritz/response.h>
 #include <ritz/simulate.h>
 
@@ -150,6 +151,7 @@ RITZ_CONTAINER_PAIR(response);
 RITZ_CONTAINER_PAIR(state_space);
 RITZ_CONTAINER_PAIR(simulation);
 RITZ_CONTAINER_PAIR(rankings);
+RITZ_CONTAINER_PAIR(recovered);
 
 #pragma GCC visibility pop
 

@@ -35,7 +35,10 @@ typedef struct ritz_shapes {
     ritz_shape_mode *mode; /* count; NULL: columns of a basis, no modes */
     bool coupled; /* a damping matrix may couple modes, which no ratio says */
     bool structural; /* there is structural damping, which no ratio includes */
-    char units[RITZ_NAME_SIZE]; /* "kg m s"; "" if not known */
+    char units[RITZ_NAME_SIZE];    /* "kg m s"; "" if not known */
+    int64_t num_fields;            /* values of cells; modes have none */
+    char (*field)[RITZ_NAME_SIZE]; /* num_fields, "stress sx" */
+    double *of_cell; /* [k * cells.count + cell] of field k; NaN: none */
 } ritz_shapes;
 
 /**
@@ -73,7 +76,92 @@ ritz_status ritz_shapes_of_basis(const ritz_basis *basis,
                                  const ritz_component *component,
                                  const char *list, ritz_shapes *out);
 
+/** Columns of T of a reduced component: the points' motion is the sum of these
+ * times its coordinates. @return RITZ_ERR_ARGUMENT as ritz_shapes_of_reduced */
+ritz_status ritz_shapes_of_motion(const ritz_reduced *reduced,
+                                  ritz_shapes *out);
+
 void ritz_shapes_free(ritz_shapes *shapes);
+
+/*
+ * A reduced component in motion: its points displaced, and its cells with the
+ * rows of quantities that are of their elements. A quantity has a field of its
+ * name, the value of the largest size of each element, and one more for each
+ * word of its rows, "stress sx", if these are no more than 31.
+ */
+typedef struct ritz_moving {
+    const ritz_reduced *reduced; /* borrowed */
+    ritz_shapes columns;         /* of T */
+    ritz_shapes frame;     /* one shape; points and cells are borrowed from
+                                    `columns` */
+    int64_t *first, *last; /* of each row: cells in `order`, none if equal */
+    int64_t *order;        /* cells by number of their element */
+    int64_t *field;        /* of each row, -1: only that of the quantity */
+    int64_t *whole;        /* field of each quantity, -1: none */
+    int64_t num_lost;      /* rows of elements that are no cell */
+} ritz_moving;
+
+/** @return RITZ_ERR_ARGUMENT as ritz_shapes_of_motion */
+ritz_status ritz_moving_new(const ritz_reduced *reduced, ritz_moving *out);
+
+/** Move the points to coordinates @p q, and take all values off the cells. */
+void ritz_moving_to(ritz_moving *moving, const double *q);
+
+/** Put the rows of quantity @p k on the cells. */
+void ritz_moving_paint(ritz_moving *moving, int64_t k, const double *y);
+
+void ritz_moving_free(ritz_moving *moving);
+
+/* Shapes over time, a frame for each time, of which none is kept in memory. */
+typedef struct ritz_series {
+    const struct ritz_series_format *format;
+    void *own;           /* of the format */
+    char *comment;       /* the certificate of the component */
+    int64_t count, room; /* frames */
+    double *seconds;     /* count */
+} ritz_series;
+
+typedef struct ritz_series_format {
+    const char *name; /* "pvd" */
+    const char *summary;
+    const char *reference; /* key in docs/references.bib */
+    /** @param[in] mesh  points and cells of all frames, borrowed to the end */
+    ritz_status (*begin)(const char *path, const ritz_shapes *mesh,
+                         ritz_series *series);
+    /** Write frame series->count. @param[in] frame  one shape and its fields */
+    ritz_status (*frame)(ritz_series *series, const ritz_shapes *frame);
+    /** Write what joins the frames to @p path, which may be another than that
+     * of begin, and publish it. */
+    ritz_status (*finish)(ritz_series *series, const char *path);
+    /** Free, and remove frames of a series that was not finished. */
+    void (*end)(ritz_series *series);
+} ritz_series_format;
+
+/** All formats of series, ended by NULL. */
+extern const ritz_series_format *const ritz_series_formats[];
+extern const ritz_series_format ritz_series_format_pvd;
+extern const ritz_series_format ritz_series_format_xdmf;
+
+/**
+ * Begin a series, whose files carry the certificate of the component.
+ *
+ * @param[in]  stamp  inputs and command; NULL: not known
+ * @param[out] out    freed by ritz_series_free(), after a failure too
+ */
+ritz_status ritz_series_begin(const ritz_series_format *format,
+                              const char *path, const ritz_moving *moving,
+                              const ritz_stamp *stamp, ritz_series *out);
+ritz_status ritz_series_frame(ritz_series *series, double seconds,
+                              const ritz_shapes *frame);
+ritz_status ritz_series_finish(ritz_series *series, const char *path);
+void ritz_series_free(ritz_series *series);
+
+/** Write maxima as a table with tabs, a line for each row of each quantity,
+ * behind comments with the certificate of the component. */
+ritz_status ritz_recovered_write(const char *path,
+                                 const ritz_recovered *recovered,
+                                 const ritz_reduced *reduced,
+                                 const ritz_stamp *stamp);
 
 /* From containers to files that others read: what ritz-export does. */
 

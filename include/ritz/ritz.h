@@ -15,6 +15,7 @@
 #include <ritz/parts.h>
 #include <ritz/poles.h>
 #include <ritz/ranking.h>
+#include <ritz/recover.h>
 #include <ritz/response.h>
 #include <ritz/scene.h>
 #include <ritz/simulate.h>

@@ -130,6 +130,7 @@ DEFINE_KIND(system)
 DEFINE_KIND(response)
 DEFINE_KIND(simulation)
 DEFINE_KIND(rankings)
+DEFINE_KIND(recovered)
 
 bool ritz_container_seems(const char *path)
 {

@@ -158,3 +158,45 @@ const ritz_schema ritz_schema_simulation = {
     .members = simulation_members,
     .settle = settle_simulation,
 };
+
+/* Maxima over time. */
+
+static const ritz_member peaks_members[] = {
+    {"kind", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_peaks, kind), "",
+     "as in a component, like `place` and `part`"},
+    {"by", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_peaks, by), "",
+     "mode displacement or mode acceleration"},
+    {"place", SET_WHOLE, RITZ_AT(ritz_peaks, place), "k",
+     "number of an element or grid; 0: none", "0.."},
+    {"part", SET_WORDS, RITZ_AT(ritz_peaks, part), "k",
+     "what each row is there"},
+    {"value", SET_REAL, RITZ_AT(ritz_peaks, value), "k",
+     "value of the largest size over time, with its sign"},
+    {"seconds", SET_REAL, RITZ_AT(ritz_peaks, seconds), "k",
+     "time at which it was reached first"},
+    {0},
+};
+
+static const ritz_schema peaks_schema = {
+    .name = "maxima of a quantity",
+    .sizes = {{'k', .offset = offsetof(ritz_peaks, count), "place"}},
+    .members = peaks_members,
+};
+
+static const ritz_member recovered_members[] = {
+    {"count", ATTRIBUTE_WHOLE, RITZ_AT(ritz_recovered, count), "",
+     "number of times", "0.."},
+    {"begin", ATTRIBUTE_REAL, RITZ_AT(ritz_recovered, begin), "",
+     "first of these times"},
+    {"end", ATTRIBUTE_REAL, RITZ_AT(ritz_recovered, end), "", "last of them"},
+    {"quantities", LIST, RITZ_LIST(ritz_recovered, quantity), "q",
+     .schema = &peaks_schema},
+    {0},
+};
+
+const ritz_schema ritz_schema_recovered = {
+    .name = "recovered",
+    .units = offsetof(ritz_recovered, units),
+    .sizes = {{'q', .offset = offsetof(ritz_recovered, num_quantities)}},
+    .members = recovered_members,
+};

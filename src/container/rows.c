@@ -11,9 +11,11 @@ typedef void row_listener(const ritz_container_row *row, void *data);
 enum { PATH_SIZE = 4 * RITZ_NAME_SIZE };
 
 static const ritz_schema *const kinds[] = {
-    &ritz_schema_component,   &ritz_schema_basis,    &ritz_schema_reduced,
-    &ritz_schema_state_space, &ritz_schema_system,   &ritz_schema_response,
-    &ritz_schema_simulation,  &ritz_schema_rankings, NULL,
+    &ritz_schema_component,  &ritz_schema_basis,
+    &ritz_schema_reduced,    &ritz_schema_state_space,
+    &ritz_schema_system,     &ritz_schema_response,
+    &ritz_schema_simulation, &ritz_schema_rankings,
+    &ritz_schema_recovered,  NULL,
 };
 
 static const ritz_schema *const shared[] = {

@@ -157,8 +157,9 @@ int64_t ritz_schema_size(const ritz_place *place, char letter);
 extern const ritz_schema ritz_schema_component, ritz_schema_basis,
     ritz_schema_reduced, ritz_schema_state_space, ritz_schema_system,
     ritz_schema_response, ritz_schema_simulation, ritz_schema_ranking,
-    ritz_schema_rankings, ritz_schema_grids, ritz_schema_elements,
-    ritz_schema_recovery, ritz_schema_dampers, ritz_schema_io,
-    ritz_schema_columns, ritz_schema_origin, ritz_schema_measures;
+    ritz_schema_rankings, ritz_schema_recovered, ritz_schema_grids,
+    ritz_schema_elements, ritz_schema_recovery, ritz_schema_dampers,
+    ritz_schema_io, ritz_schema_columns, ritz_schema_origin,
+    ritz_schema_measures;
 
 #endif

@@ -6,6 +6,7 @@
 
 #include <ritz/model.h>
 #include <ritz/ranking.h>
+#include <ritz/recover.h>
 #include <ritz/response.h>
 #include <ritz/simulate.h>
 
@@ -103,4 +104,16 @@ void ritz_measures_free(ritz_measures *measures)
 {
     free(measures->item);
     *measures = (ritz_measures){0};
+}
+
+void ritz_peaks_free(ritz_peaks *peaks)
+{
+    RITZ_FREE(peaks->place, peaks->part, peaks->value, peaks->seconds);
+    *peaks = (ritz_peaks){0};
+}
+
+void ritz_recovered_free(ritz_recovered *recovered)
+{
+    RITZ_FREE_EACH(ritz_peaks, recovered->num_quantities, recovered->quantity);
+    *recovered = (ritz_recovered){0};
 }

@@ -266,6 +266,10 @@ IMPORT = {
     "tied": f"stiffness K\ndofs D\nbulk B\n>K\n{K}>D\n1 1\n2 1\n3 1\n"
             ">B\nSOL 103\nCEND\nMPC=8\nBEGIN BULK\nGRID,1\nGRID,2,,1.\n"
             "GRID,3,,2.\nMPC,8,2,1,1.0,3,1,-1.0\nENDDATA\n",
+    "recovery": f"stiffness K\nmass K\nrows 0\nrecovery stress=S,other\n"
+                f"recovery-rows stress=N\n>K\n{K}"
+                ">S\n%%MatrixMarket matrix array real general\n1 3\n1\n0\n2\n"
+                ">N\n12 sx # first\n",
     "modal": "frequencies F\nratios R\ninput u=1:0*0.3,2:0*-1.2\n"
              "output-matrix C\noutput-names tip@1e-3\n"
              ">F\n%%MatrixMarket matrix array real general\n2 1\n0\n1.5\n"
@@ -411,6 +415,17 @@ RANK_TRACKS = {
 }
 
 
+HISTORY = {
+    "exudyn": "#Exudyn sensor\n0,1,2,10,20,100,200\n0.5,-1,-2,-10,-20,1e2,0\n",
+    "fmpy": '"time","v[1]","q[1]","q[2]","v[2]","push"\n0,10,1,2,20,7\n'
+            "0.25, 11,1.5,2.5,21, 8\n",
+    "mbdyn": "       2.1 1 10 100\n       2.4 2 20 200\n       3.1 9 9 9\n"
+             "       2.1 -1 -10 -100\n       2.4 -2 -20 -200\n",
+    "columns": "# q: 2,4\n0 1 2 3 4\n1\t1 2 3 4\n",
+    "names": "# q: x*\ntime x1 x2\n0 1 2\n",
+}
+
+
 def command(*words, **files):
     lines = [*words, *(f">{name}\n{text}" for name, text in files.items())]
     return "\n".join(lines) + "\n"
@@ -421,6 +436,17 @@ COMMANDS = {
                         "--input", "torque=step", "--damping", "modal 0.01",
                         "--damper", "strut=10*3", "--band-hz", "0,10",
                         "--hold=zero", "--every", "4"),
+    "recover": command("ritz-recover", "t.h5", "--component", "r.h5",
+                       "--modes=acceleration", "--to", "xdmf", "--every", "3",
+                       "--maxima=m", "--table", "t", "--damping", "modal 0.01",
+                       "--damper", "strut=10*3", "-o", "o"),
+    "recover-table": command("ritz-recover", "F", "--component=r.h5", "--q",
+                             "2-10", "--v=3-11", "--a=v*", "--f", "push",
+                             "--step=0.1", "--label", "2", "--transform",
+                             "modes", "--table=t", F="0 1 2 3\n"),
+    "recover-system": command("ritz-recover", "t.h5", "--component=r.h5",
+                              "--system", "s.h5", "--body=rotor", "--at",
+                              "clock=60,cone=0", "--table=t"),
     "poles-scan": command("ritz-poles", "c.h5", "--scan",
                           "strut=0:10:0.5*1:2:1", "--mode", "3", "--tsv"),
     "poles-scan-one": command("ritz-poles", "c.h5", "--scan=strut=0:10:1",
@@ -553,7 +579,8 @@ CORPUS = {
                  "output4": OUTPUT4, "matrix-input": MATRIX_INPUT["named"],
                  "user-element": USER_ELEMENT["abaqus"]},
     "deck": DECK, "fmu": FMU, "import": IMPORT, "state-space": STATE_SPACE,
-    "container": CONTAINER, "scene": SCENE, "signal": SIGNAL, "texts": TEXTS,
+    "container": CONTAINER, "scene": SCENE, "signal": SIGNAL,
+    "history": HISTORY, "texts": TEXTS,
     "claims": CLAIMS, "records": RECORDS, "tracks": TRACKS,
     "commands": COMMANDS, "initial": INITIAL, "rank-tracks": RANK_TRACKS,
 }

@@ -33,6 +33,8 @@ static const fuzz_target targets[] = {
     {"fmu", "resources of FMUs, and a step of them", fuzz_fmu},
     {"scene", "scenes, and settings of --at", fuzz_scene},
     {"signal", "signals of ritz-simulate, and their tables", fuzz_signal},
+    {"history", "coordinates over time, of Exudyn, FMPy and MBDyn",
+     fuzz_history},
     {"texts", "values of options", fuzz_texts},
     {"claims", "claims files; no tool is run", fuzz_claims},
     {"records", "files of --record", fuzz_records},

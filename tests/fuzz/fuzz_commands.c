@@ -48,6 +48,7 @@ typedef int tool_main(int argc, char **argv);
     X(info)                                                                    \
     X(poles)                                                                   \
     X(rank)                                                                    \
+    X(recover)                                                                 \
     X(reduce)                                                                  \
     X(simulate)                                                                \
     X(verify)

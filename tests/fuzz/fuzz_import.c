@@ -45,6 +45,11 @@ typedef struct fuzz_option {
         word, false, offsetof(REQUEST, field), offsetof(REQUEST, number)       \
     }
 
+#define FILES_OF(word, field, number)                                          \
+    {                                                                          \
+        word, true, offsetof(REQUEST, field), offsetof(REQUEST, number)        \
+    }
+
 #define REQUEST ritz_import_request
 static const fuzz_option of_component[] = {
     FILE_OF("stiffness", stiffness),
@@ -69,6 +74,8 @@ static const fuzz_option of_component[] = {
     LIST("input", input, num_inputs),
     LIST("output", output, num_outputs),
     LIST("damper", damper, num_dampers),
+    FILES_OF("recovery", recovery, num_recoveries),
+    FILES_OF("recovery-rows", recovery_rows, num_recovery_rows),
     {0},
 };
 #undef REQUEST

@@ -7,6 +7,7 @@
 #include "cli/model.h"
 
 #include "base/alloc.h"
+#include "sample_quantities.h"
 #include "samples.h"
 
 #include <ritz/ranking.h>
@@ -57,8 +58,11 @@ static ritz_status sample_model(char letter, model *out)
     case 't':
         out->kind = MODEL_SIMULATION;
         return sample_simulation(&out->simulation);
+    case 'm':
+        out->kind = MODEL_RECOVERED;
+        return sample_recovered(&out->recovered);
     default:
-        return ritz_fail(RITZ_ERR_FILE, "there are eight samples");
+        return ritz_fail(RITZ_ERR_FILE, "there are nine samples");
     }
 }
 
@@ -159,6 +163,7 @@ REFUSES(ritz_gramians_of_space_by)
 REFUSES(ritz_h2_of)
 REFUSES(ritz_joint_neighbour)
 REFUSES(ritz_placing_of)
+REFUSES(ritz_recoverer_new)
 REFUSES(ritz_reduce)
 REFUSES(ritz_reduce_space)
 REFUSES(ritz_reweigh)

@@ -7,6 +7,7 @@
 #include <ritz/basis.h>
 #include <ritz/parts.h>
 #include <ritz/ranking.h>
+#include <ritz/recover.h>
 #include <ritz/scene.h>
 #include <ritz/simulate.h>
 #include <ritz/verify.h>
@@ -71,6 +72,36 @@ void fuzz_signal(const char *bytes, int64_t size)
     } else if (!strchr(bytes, '/')) { /* it may name a file */
         read_signal(bytes + 2);
     }
+}
+
+/* --- histories ------------------------------------------------------------ */
+
+/* A first line "# q: COLUMNS" is the value of --q. */
+void fuzz_history(const char *bytes, int64_t size)
+{
+    static const char mark[] = "# q: ";
+    const size_t length = sizeof mark - 1;
+    static const char input[1][RITZ_NAME_SIZE] = {"push"};
+    RITZ_OWN(ritz_history) history = {0};
+    ritz_history_request request = {
+        .order = 2, .num_inputs = 1, .input = input, .step = 0.5};
+    char *list = NULL;
+    ritz_status status = RITZ_OK;
+    bool more = true;
+
+    if (strncmp(bytes, mark, length) == 0)
+        list = strndup(bytes + length, strcspn(bytes + length, "\n"));
+    request.q = list;
+    fuzz_store("history", bytes, size);
+    status = ritz_history_open("history", &request, &history);
+    fuzz_judge(status);
+    while (status == RITZ_OK && more) {
+        ritz_instant now = {0};
+
+        status = ritz_history_next(&history, &now, &more);
+        fuzz_judge(status);
+    }
+    free(list);
 }
 
 /* --- values of options ---------------------------------------------------- */

@@ -24,7 +24,8 @@ typedef enum model_kind {
     MODEL_RANKING = 32,
     MODEL_STATES = 64,
     MODEL_SIMULATION = 128,
-    MODEL_ANY = 255,
+    MODEL_RECOVERED = 256,
+    MODEL_ANY = 511,
 } model_kind;
 
 /* Those that have poles and responses. */
@@ -42,7 +43,8 @@ enum {
     X(RESPONSE, response, response, "response", "a response")                  \
     X(RANKING, rankings, rankings, "ranking", "a ranking")                     \
     X(STATES, state_space, states, "state-space", "a state space")             \
-    X(SIMULATION, simulation, simulation, "simulation", "a time response")
+    X(SIMULATION, simulation, simulation, "simulation", "a time response")     \
+    X(RECOVERED, recovered, recovered, "recovered", "recovered maxima")
 
 /* The content of a container: the object that `kind` names. All others are
    empty, except those from which it was made. */

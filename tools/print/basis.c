@@ -377,7 +377,7 @@ static ritz_status estimate_model(const model *full, ritz_basis *basis,
     return ritz_estimate(&full->component, &made, &given->estimate, reduced);
 }
 
-/* Mode acceleration, if it is asked for, of what has not been reduced before. */
+/* Mode acceleration, if asked for, of what has not been reduced before. */
 static ritz_status correct_rows(cli_run *run, const model *full,
                                 const ritz_basis *basis,
                                 const reduce_options *given,
@@ -390,7 +390,7 @@ static ritz_status correct_rows(cli_run *run, const model *full,
     RITZ_REFUSE_IF(given->project, RITZ_ERR_ARGUMENT,
                    "--recovery acceleration factors K, which --engine slepc "
                    "does not do");
-    RITZ_REFUSE_IF(full->kind != MODEL_COMPONENT, RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(full->reduced.K.val, RITZ_ERR_ARGUMENT,
                    "'%s' was reduced before: it keeps the mode acceleration "
                    "that it has, and gets no other",
                    run->operand[0]);

@@ -316,6 +316,22 @@ typedef struct rank_options {
 /** Rank what the operand holds, or read rankings of --compare, and report. */
 ritz_status rank_run(cli_run *run, rank_options *given);
 
+/* --- ritz-recover --------------------------------------------------------- */
+
+typedef struct recover_options {
+    const char *component, *system, *body;
+    const char *modes, *to; /* words of the command line; modes NULL: either */
+    const char *maxima, *table;
+    const char *transform;
+    const char *q, *v, *a, *f; /* columns of a table */
+    double step;               /* of a file .mod; 0: not given */
+    int64_t every, label;
+    model_options model;
+} recover_options;
+
+/** Recover all times of a history, write them and their maxima. */
+ritz_status recover_run(cli_run *run, const recover_options *given);
+
 /* --- ritz-simulate -------------------------------------------------------- */
 
 typedef struct simulation_options {

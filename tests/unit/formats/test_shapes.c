@@ -128,7 +128,7 @@ static void cells_that_do_not_fit_are_refused(void **state)
 {
     int64_t kind[] = {RITZ_CELL_LINE}, first[] = {0, 2}, grid[] = {1, 3};
     const int64_t id[] = {1, 2, 3};
-    ritz_elements cells = {1, kind, first, grid};
+    ritz_elements cells = {1, kind, first, grid, NULL};
 
     (void)state;
     assert_ok(ritz_elements_check(&cells, 3, id));

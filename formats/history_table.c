@@ -1,0 +1,312 @@
+/*
+ * Tables of text, a line for each time: sensors and solutions of Exudyn, with
+ * comments of '#' in front and times in the first column [Gerstmayr2023]; what
+ * write_csv of FMPy makes, with a line of names, one of them "time"; and any
+ * other with commas or blanks between its columns.
+ */
+#include "formats/history_lines.h"
+
+#include "base/alloc.h"
+#include "base/text.h"
+
+#include <ritz/recover.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+enum { RATES = 3 }; /* q, q', q'' */
+
+static const char letters[RATES + 1] = "qva";
+
+typedef struct table {
+    history_lines lines;
+    char mark;    /* between columns */
+    bool waiting; /* the first line of numbers is read */
+    int64_t count, room;
+    char (
+        *name)[RITZ_NAME_SIZE]; /* of each column; "" without a line of them */
+    double *value;              /* count */
+    int64_t time;
+    int64_t *column[RATES]; /* order each; NULL: not there */
+    int64_t *input;
+} table;
+
+static void end(void *own)
+{
+    table *t = own;
+
+    history_lines_free(&t->lines);
+    RITZ_FREE(t->name, t->value, t->column[0], t->column[1], t->column[2],
+              t->input);
+    free(t);
+}
+
+/* Any text whose first line, comments left out, has two fields. */
+static bool recognise(const char *bytes, int64_t size)
+{
+    const char *end_of = bytes + size;
+
+    for (const char *at = bytes; at < end_of;) {
+        const char *newline = memchr(at, '\n', (size_t)(end_of - at));
+        const char *stop = newline ? newline : end_of;
+
+        while (at < stop && (*at == ' ' || *at == '\t' || *at == '\r'))
+            at++;
+        if (at < stop && *at != '#')
+            return !memchr(at, '\0', (size_t)(stop - at)) &&
+                   (memchr(at, ',', (size_t)(stop - at)) ||
+                    memchr(at, ' ', (size_t)(stop - at)) ||
+                    memchr(at, '\t', (size_t)(stop - at)));
+        at = stop + 1;
+    }
+    return false;
+}
+
+/* ---- columns ------------------------------------------------------------ */
+
+/* The first line: names, or already numbers. */
+static ritz_status read_names(table *t)
+{
+    RITZ_OWN_ARRAY char *copy = NULL;
+    char *rest = NULL;
+    double number = 0.0;
+    bool more = false;
+
+    RITZ_CHECK(history_lines_next(&t->lines, &more));
+    RITZ_REFUSE_IF(!more, RITZ_ERR_FORMAT, "holds no times");
+    RITZ_CHECK_COPY(copy, t->lines.text, (int64_t)strlen(t->lines.text) + 1);
+    t->mark = history_lines_mark(copy);
+    rest = copy;
+    for (const char *field; (field = history_lines_field(&rest, t->mark));
+         t->count++) {
+        RITZ_CHECK_ROOM(t->name, t->count, t->room);
+        t->name[t->count][0] = '\0';
+        if (t->count == 0)
+            t->waiting = ritz_text_real(field, &number);
+        if (!t->waiting)
+            snprintf(t->name[t->count], RITZ_NAME_SIZE, "%s", field);
+    }
+    for (int64_t k = 0; k < t->count; k++)
+        if (strcasecmp(t->name[k], "time") == 0)
+            t->time = k;
+    RITZ_CHECK_NEW(t->value, t->count);
+    return RITZ_OK;
+}
+
+static ritz_status put_column(int64_t column, int64_t due, int64_t *count,
+                              int64_t *out)
+{
+    if (*count < due)
+        out[*count] = column;
+    (*count)++;
+    return RITZ_OK;
+}
+
+/* Columns of one item: "7", "2-9", "NAME" or "PREFIX*". */
+static ritz_status take_item(const table *t, const char *item, int64_t due,
+                             int64_t *count, int64_t *out)
+{
+    size_t length = strlen(item);
+    bool star = length > 0 && item[length - 1] == '*';
+    int64_t from = 0, to = 0, before = *count;
+
+    if (ritz_text_range(item, length, &from, &to)) {
+        to = to > 0 ? to : from;
+        RITZ_REFUSE_IF(to > t->count, RITZ_ERR_ARGUMENT,
+                       "there is no column %" PRId64 ", there are %" PRId64, to,
+                       t->count);
+        for (; from <= to; from++)
+            RITZ_CHECK(put_column(from - 1, due, count, out));
+        return RITZ_OK;
+    }
+    for (int64_t k = 0; k < t->count; k++)
+        if (star ? strncmp(t->name[k], item, length - 1) == 0
+                 : strcmp(t->name[k], item) == 0)
+            RITZ_CHECK(put_column(k, due, count, out));
+    RITZ_REFUSE_IF(*count == before, RITZ_ERR_ARGUMENT,
+                   "there is no column '%s'", item);
+    return RITZ_OK;
+}
+
+static ritz_status take_list(const table *t, const char *list, char option,
+                             int64_t due, int64_t **out)
+{
+    RITZ_OWN_ARRAY int64_t *column = NULL;
+    char item[2 * RITZ_NAME_SIZE];
+    int64_t count = 0;
+
+    RITZ_CHECK_NEW(column, due);
+    for (const char *at = list; *at;) {
+        size_t length = strcspn(at, ",");
+
+        RITZ_REFUSE_IF(length == 0 || length >= sizeof item, RITZ_ERR_ARGUMENT,
+                       "--%c '%.60s' is no list of columns", option, list);
+        memcpy(item, at, length);
+        item[length] = '\0';
+        RITZ_CHECK(take_item(t, item, due, &count, column));
+        at += length + (at[length] == ',');
+    }
+    RITZ_REFUSE_IF(count != due, RITZ_ERR_ARGUMENT,
+                   "--%c names %" PRId64 " columns, %" PRId64 " are due",
+                   option, count, due);
+    RITZ_MOVE(*out, column);
+    return RITZ_OK;
+}
+
+/* Column of a name; -1: there is none. */
+static int64_t find_name(const table *t, const char *name)
+{
+    for (int64_t k = 0; k < t->count; k++)
+        if (*name && strcmp(t->name[k], name) == 0)
+            return k;
+    return -1;
+}
+
+/* Columns "q[1]", "q[2]", ...; nothing if the first is not there. */
+static ritz_status take_indexed(const table *t, char letter, int64_t due,
+                                int64_t **out)
+{
+    RITZ_OWN_ARRAY int64_t *column = NULL;
+    char name[RITZ_NAME_SIZE];
+
+    RITZ_CHECK_NEW(column, due);
+    for (int64_t j = 0; j < due; j++) {
+        snprintf(name, sizeof name, "%c[%" PRId64 "]", letter, j + 1);
+        column[j] = find_name(t, name);
+        if (column[j] < 0 && j == 0)
+            return RITZ_OK;
+        RITZ_REFUSE_IF(column[j] < 0, RITZ_ERR_FORMAT,
+                       "there is no column '%s', of %" PRId64 " coordinates",
+                       name, due);
+    }
+    RITZ_MOVE(*out, column);
+    return RITZ_OK;
+}
+
+/* A table without names: behind the times q, or q and q', or q, q' and q''. */
+static ritz_status take_blocks(table *t, int64_t order)
+{
+    const int64_t blocks = order > 0 ? (t->count - 1) / order : 0;
+
+    RITZ_REFUSE_IF(t->count - 1 != blocks * order || blocks < 1 ||
+                       blocks > RATES,
+                   RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " columns are not times and one to three for "
+                   "each of %" PRId64 " coordinates: name them by --q",
+                   t->count, order);
+    for (int64_t k = 0; k < blocks; k++) {
+        RITZ_CHECK_NEW(t->column[k], order);
+        for (int64_t j = 0; j < order; j++)
+            t->column[k][j] = 1 + k * order + j;
+    }
+    return RITZ_OK;
+}
+
+static ritz_status find_inputs(const ritz_history_request *request, table *t)
+{
+    RITZ_OWN_ARRAY int64_t *input = NULL;
+
+    if (request->f)
+        return take_list(t, request->f, 'f', request->num_inputs, &t->input);
+    RITZ_CHECK_NEW(input, request->num_inputs);
+    for (int64_t j = 0; j < request->num_inputs; j++) {
+        input[j] = find_name(t, request->input[j]);
+        if (input[j] < 0)
+            return RITZ_OK;
+    }
+    RITZ_MOVE(t->input, input);
+    return RITZ_OK;
+}
+
+static ritz_status find_columns(const ritz_history_request *request, table *t)
+{
+    const char *const list[RATES] = {request->q, request->v, request->a};
+    bool listed = false;
+
+    for (int k = 0; k < RATES; k++)
+        listed = listed || list[k];
+    for (int k = 0; k < RATES; k++)
+        if (list[k])
+            RITZ_CHECK(take_list(t, list[k], letters[k], request->order,
+                                 &t->column[k]));
+        else if (!t->waiting)
+            RITZ_CHECK(
+                take_indexed(t, letters[k], request->order, &t->column[k]));
+    if (!listed && t->waiting)
+        RITZ_CHECK(take_blocks(t, request->order));
+    RITZ_REFUSE_IF(!t->column[0], RITZ_ERR_ARGUMENT,
+                   "no column is called 'q[1]': name those of the coordinates "
+                   "by --q");
+    return find_inputs(request, t);
+}
+
+static ritz_status begin(FILE *file, const ritz_history_request *request,
+                         ritz_history *history)
+{
+    table *t = ritz_zalloc(1, sizeof *t);
+
+    if (!t) {
+        fclose(file);
+        return RITZ_ERR_MEMORY;
+    }
+    t->lines.file = file;
+    history->own = t;
+    RITZ_CHECK(read_names(t));
+    RITZ_CHECK(find_columns(request, t));
+    history->has_v = t->column[1];
+    history->has_a = t->column[2];
+    history->has_f = t->input;
+    return RITZ_OK;
+}
+
+/* ---- lines -------------------------------------------------------------- */
+
+static ritz_status read_values(table *t)
+{
+    char *rest = t->lines.text;
+    int64_t count = 0;
+
+    for (const char *field; (field = history_lines_field(&rest, t->mark));
+         count++)
+        if (count < t->count)
+            RITZ_CHECK(history_lines_real(&t->lines, field, &t->value[count]));
+    RITZ_REFUSE_IF(count != t->count, RITZ_ERR_FORMAT,
+                   "line %" PRId64 " has %" PRId64 " columns, the first has "
+                   "%" PRId64,
+                   t->lines.number, count, t->count);
+    return RITZ_OK;
+}
+
+static ritz_status next(ritz_history *history, bool *more)
+{
+    table *t = history->own;
+
+    *more = true;
+    if (!t->waiting)
+        RITZ_CHECK(history_lines_next(&t->lines, more));
+    t->waiting = false;
+    if (!*more)
+        return RITZ_OK;
+    RITZ_CHECK(read_values(t));
+    history->seconds = t->value[t->time];
+    for (int k = 0; k < RATES; k++)
+        for (int64_t j = 0; t->column[k] && j < history->order; j++)
+            history->x[k * history->order + j] = t->value[t->column[k][j]];
+    for (int64_t j = 0; t->input && j < history->num_inputs; j++)
+        history->f[j] = t->value[t->input[j]];
+    return RITZ_OK;
+}
+
+const ritz_history_format ritz_history_format_table = {
+    .name = "table",
+    .summary = "a table of text, as Exudyn and FMPy write",
+    .reference = "Gerstmayr2023",
+    .recognise = recognise,
+    .begin = begin,
+    .next = next,
+    .end = end,
+};

@@ -1,0 +1,8 @@
+/* Formats of shapes over time. */
+#include <ritz/export.h>
+
+const ritz_series_format *const ritz_series_formats[] = {
+    &ritz_series_format_pvd,
+    &ritz_series_format_xdmf,
+    NULL,
+};

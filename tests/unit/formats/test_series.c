@@ -1,0 +1,227 @@
+/* Shapes over time: what frames hold, and what is left of a series that fails.
+ * meshio reads them in tests/tools/recover.sh. */
+#include "testing.h"
+
+#include "folder.h"
+
+#include <ritz/export.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+/* Two masses on a line, elements 7 (of grids 1, 2) and 9 (of grid 2, 3). */
+static void make_body(ritz_reduced *out)
+{
+    static const int64_t grid[] = {1, 2, 2, 3};
+    ritz_quantity *q = NULL;
+
+    *out = (ritz_reduced){.num_dofs = 3, .units = "kg m s"};
+    assert_ok(ritz_dense_identity(2, &out->K));
+    assert_ok(ritz_dense_identity(2, &out->M));
+    assert_ok(ritz_dense_new(3, 2, &out->T));
+    assert_ok(ritz_columns_new(2, &out->columns));
+    assert_ok(ritz_io_new(2, 0, 0, &out->io));
+    out->T.val[0] = 1.0;
+    out->T.val[5] = 2.0;
+    out->dof = ritz_zalloc(3, sizeof *out->dof);
+    out->grids = (ritz_grids){.count = 3,
+                              .num_frames = 1,
+                              .id = ritz_zalloc(3, 8),
+                              .position = ritz_zalloc(9, 8),
+                              .frame = ritz_zalloc(3, 8),
+                              .axes = ritz_zalloc(9, 8)};
+    out->elements = (ritz_elements){.count = 2,
+                                    .kind = ritz_zalloc(2, 8),
+                                    .first = ritz_zalloc(3, 8),
+                                    .grid = ritz_zalloc(4, 8),
+                                    .id = ritz_zalloc(2, 8)};
+    for (int64_t k = 0; k < 3; k++) {
+        out->dof[k] = (ritz_dof){k + 1, 1};
+        out->grids.id[k] = k + 1;
+        out->grids.position[3 * k] = (double)k;
+        out->grids.axes[4 * k] = 1.0;
+        out->elements.first[k] = 2 * k;
+    }
+    out->elements.kind[0] = out->elements.kind[1] = RITZ_CELL_LINE;
+    out->elements.id[0] = 9;
+    out->elements.id[1] = 7;
+    memcpy(out->elements.grid, grid, sizeof grid);
+    q = out->quantity = ritz_zalloc(1, sizeof *q);
+    out->num_quantities = 1;
+    snprintf(q->name, sizeof q->name, "stress");
+    snprintf(q->kind, sizeof q->kind, "stress");
+    q->count = 4;
+    q->place = ritz_zalloc(4, 8);
+    q->part = ritz_zalloc(4, sizeof *q->part);
+    assert_ok(ritz_dense_new(4, 2, &q->ST));
+    for (int64_t k = 0; k < 4; k++) {
+        q->place[k] = k == 3 ? 8 : 7 + 2 * (k / 2);
+        snprintf(q->part[k], RITZ_NAME_SIZE, k % 2 ? "sy" : "sx");
+    }
+}
+
+static void cells_have_the_rows_of_their_elements(void **)
+{
+    RITZ_OWN(ritz_reduced) body = {0};
+    RITZ_OWN(ritz_moving) m = {0};
+    const double q[2] = {0.5, -3.0}, y[4] = {1.0, -4.0, 2.0, 9.0};
+
+    make_body(&body);
+    assert_ok(ritz_moving_new(&body, &m));
+    assert_int_equal(m.num_lost, 1); /* element 8 */
+    assert_int_equal(m.frame.num_fields, 3);
+    assert_string_equal(m.frame.field[0], "stress");
+    assert_string_equal(m.frame.field[1], "stress sx");
+    assert_string_equal(m.frame.field[2], "stress sy");
+    ritz_moving_to(&m, q);
+    assert_near(m.frame.u.val[0], 0.5, 0.0);
+    assert_near(m.frame.u.val[6], -6.0, 0.0);
+    assert_true(isnan(m.frame.of_cell[0]));
+    ritz_moving_paint(&m, 0, y);
+    /* cell 0 is element 9, cell 1 element 7 */
+    assert_near(m.frame.of_cell[0], 2.0, 0.0);
+    assert_near(m.frame.of_cell[1], -4.0, 0.0);
+    assert_near(m.frame.of_cell[3], 1.0, 0.0);
+    assert_true(isnan(m.frame.of_cell[4]));
+    assert_near(m.frame.of_cell[5], -4.0, 0.0);
+    ritz_moving_to(&m, q);
+    assert_true(isnan(m.frame.of_cell[1]));
+}
+
+static ritz_status write_series(const ritz_series_format *format,
+                                const ritz_reduced *body, const char *path,
+                                int frames)
+{
+    RITZ_OWN(ritz_moving) m = {0};
+    RITZ_OWN(ritz_series) series = {0};
+    const double y[4] = {1.0, -4.0, 2.0, 9.0};
+
+    RITZ_CHECK(ritz_moving_new(body, &m));
+    RITZ_CHECK(ritz_series_begin(format, path, &m, NULL, &series));
+    for (int k = 0; k < frames; k++) {
+        const double q[2] = {0.25 * k, 1.0};
+
+        ritz_moving_to(&m, q);
+        ritz_moving_paint(&m, 0, y);
+        RITZ_CHECK(ritz_series_frame(&series, 0.125 * k, &m.frame));
+    }
+    return frames > 2 ? RITZ_ERR_FILE : ritz_series_finish(&series, path);
+}
+
+static void expect(const char *path, const char *words)
+{
+    RITZ_OWN_ARRAY char *text = NULL;
+
+    assert_ok(ritz_text_read(path, &text));
+    if (!strstr(text, words))
+        fail_msg("'%s' lacks '%s':\n%s", path, words, text);
+}
+
+/* An unfinished series leaves nothing. */
+static void collections_list_their_frames(void **)
+{
+    RITZ_OWN(ritz_reduced) body = {0};
+    char folder[512], frame[600];
+    const char *const path = folder_path("m.pvd");
+
+    make_body(&body);
+    assert_ok(write_series(&ritz_series_format_pvd, &body, path, 2));
+    expect(path, "timestep=\"0.125\" part=\"0\" file=\"m.frames/000001.vtu\"");
+    expect(path, "reduced component by Ritz");
+    snprintf(folder, sizeof folder, "%s", folder_path("m.frames"));
+    snprintf(frame, sizeof frame, "%s/000001.vtu", folder);
+    expect(frame, "Name=\"stress sy\" NumberOfComponents=\"1\" "
+                  "format=\"ascii\">\nnan\n-4\n");
+    expect(frame, "Name=\"displacement\" NumberOfComponents=\"3\" "
+                  "format=\"ascii\">\n0.25 0 0\n0 0 0\n2 0 0\n");
+    expect(frame, "Name=\"element\"");
+    assert_int_equal(remove(frame), 0);
+    snprintf(frame, sizeof frame, "%s/000000.vtu", folder);
+    assert_int_equal(remove(frame), 0);
+    assert_int_equal(rmdir(folder), 0);
+    assert_int_equal(remove(path), 0);
+    assert_int_equal(write_series(&ritz_series_format_pvd, &body, path, 3),
+                     RITZ_ERR_FILE);
+    assert_int_equal(access(path, F_OK), -1);
+    assert_int_equal(access(folder, F_OK), -1);
+}
+
+static void an_xdmf_has_a_grid_for_each_time(void **)
+{
+    RITZ_OWN(ritz_reduced) body = {0};
+    const char *const path = folder_path("m.xdmf");
+    const char *const heavy = folder_path("m.xdmf.h5");
+
+    make_body(&body);
+    assert_ok(write_series(&ritz_series_format_xdmf, &body, path, 2));
+    expect(path, "<Time Value=\"0.125\"/>");
+    expect(path, "m.xdmf.h5:/field_3_000001<");
+    expect(path, "CollectionType=\"Temporal\"");
+    assert_int_equal(remove(path), 0);
+    assert_int_equal(remove(heavy), 0);
+    assert_int_equal(write_series(&ritz_series_format_xdmf, &body, path, 3),
+                     RITZ_ERR_FILE);
+    assert_int_equal(access(heavy, F_OK), -1);
+    assert_fails(write_series(&ritz_series_format_xdmf, &body,
+                              folder_path("a:b.xdmf"), 1),
+                 RITZ_ERR_ARGUMENT, "holds ':'");
+}
+
+static void a_place_that_cannot_be_written_is_refused(void **)
+{
+    RITZ_OWN(ritz_reduced) body = {0};
+
+    make_body(&body);
+    assert_fails(write_series(&ritz_series_format_pvd, &body,
+                              folder_path("none/m.pvd"), 1),
+                 RITZ_ERR_FILE, "cannot make the folder");
+    ritz_dense_free(&body.T);
+    assert_fails(
+        write_series(&ritz_series_format_pvd, &body, folder_path("m.pvd"), 1),
+        RITZ_ERR_ARGUMENT, "--without-basis");
+}
+
+static void maxima_are_a_table(void **)
+{
+    RITZ_OWN(ritz_reduced) body = {0};
+    RITZ_OWN(ritz_recoverer) rules = {0};
+    RITZ_OWN(ritz_recovered) peaks = {0};
+    const double y[4] = {1.0, -4.0, 2.0, 0.1};
+    const char *const path = folder_path("m.tsv");
+
+    make_body(&body);
+    assert_ok(ritz_recoverer_new(&body, NULL, false, &rules));
+    assert_ok(ritz_recovered_new(&rules, &peaks));
+    assert_ok(ritz_recovered_note(0, 0.25, y, &peaks));
+    assert_ok(ritz_recovered_write(path, &peaks, &body, NULL));
+    expect(path, "# reduced component by Ritz");
+    expect(path, "\nstress\t7\tsy\t-4\t0.25\n");
+    expect(path, "\t0.10000000000000001\t0.25\n");
+}
+
+/* Frames get their names at once; a failure takes them away. */
+static void all_allocations_may_fail(void **)
+{
+    RITZ_OWN(ritz_reduced) body = {0};
+    char frame[600];
+    const char *const path = folder_path("a.pvd");
+
+    make_body(&body);
+    assert_survives_every_allocation(
+        write_series(&ritz_series_format_pvd, &body, path, 1));
+    snprintf(frame, sizeof frame, "%s", folder_path("a.frames/000000.vtu"));
+    assert_int_equal(remove(frame), 0);
+    assert_int_equal(rmdir(folder_path("a.frames")), 0);
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(cells_have_the_rows_of_their_elements),
+    cmocka_unit_test(collections_list_their_frames),
+    cmocka_unit_test(an_xdmf_has_a_grid_for_each_time),
+    cmocka_unit_test(a_place_that_cannot_be_written_is_refused),
+    cmocka_unit_test(maxima_are_a_table),
+    cmocka_unit_test(all_allocations_may_fail),
+};
+
+TEST_MODULE(series, tests, folder_make, folder_remove)
