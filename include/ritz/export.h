@@ -156,6 +156,30 @@ ritz_status ritz_series_frame(ritz_series *series, double seconds,
 ritz_status ritz_series_finish(ritz_series *series, const char *path);
 void ritz_series_free(ritz_series *series);
 
+/*
+ * Series that ritz_series_format_pvd wrote, for pictures of them.
+ */
+
+enum { RITZ_COLLECTION_NAME = 1024 };
+
+/** Whether a text is a list of frames. */
+bool ritz_collection_recognise(const char *text);
+
+/**
+ * The next frame of a list.
+ *
+ * @param[in,out] text  what follows is left
+ * @param[out]    name  of its file, relative to the folder of the list
+ * @return RITZ_ERR_FORMAT if it is elsewhere, or has no time
+ */
+ritz_status ritz_collection_next(const char **text, double *seconds,
+                                 char name[RITZ_COLLECTION_NAME], bool *more);
+
+/** Points, displacement, cells and the first of their values of a frame.
+ * @return RITZ_ERR_FORMAT if it is none that is text */
+ritz_status ritz_frame_parse(const char *text, ritz_shapes *out);
+ritz_status ritz_frame_read(const char *path, ritz_shapes *out);
+
 /** Write maxima as a table with tabs, a line for each row of each quantity,
  * behind comments with the certificate of the component. */
 ritz_status ritz_recovered_write(const char *path,

@@ -426,6 +426,20 @@ HISTORY = {
 }
 
 
+FRAMES = {
+    "frame": '<VTKFile type="UnstructuredGrid">\n<Piece NumberOfPoints="2" '
+             'NumberOfCells="1">\n<DataArray Name="displacement">\n0 0 1\n0 0 2'
+             '\n</DataArray>\n<CellData>\n<DataArray Name="stress">\nnan\n'
+             '</DataArray>\n</CellData>\n<DataArray Name="Points">\n'
+             '0 0 0 1 0 0\n</DataArray>\n<DataArray Name="connectivity">\n0 1'
+             '\n</DataArray>\n<DataArray Name="offsets">\n2\n</DataArray>\n'
+             '<DataArray Name="types">\n3\n</DataArray>\n</Piece>\n',
+    "list": '<VTKFile type="Collection">\n<DataSet timestep="0" part="0" '
+            'file="m.frames/000000.vtu"/>\n<DataSet timestep="0.5" '
+            'file="m.frames/000001.vtu"/>\n</VTKFile>\n',
+}
+
+
 def command(*words, **files):
     lines = [*words, *(f">{name}\n{text}" for name, text in files.items())]
     return "\n".join(lines) + "\n"
@@ -580,7 +594,7 @@ CORPUS = {
                  "user-element": USER_ELEMENT["abaqus"]},
     "deck": DECK, "fmu": FMU, "import": IMPORT, "state-space": STATE_SPACE,
     "container": CONTAINER, "scene": SCENE, "signal": SIGNAL,
-    "history": HISTORY, "texts": TEXTS,
+    "history": HISTORY, "frames": FRAMES, "texts": TEXTS,
     "claims": CLAIMS, "records": RECORDS, "tracks": TRACKS,
     "commands": COMMANDS, "initial": INITIAL, "rank-tracks": RANK_TRACKS,
 }

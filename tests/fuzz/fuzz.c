@@ -35,6 +35,8 @@ static const fuzz_target targets[] = {
     {"signal", "signals of ritz-simulate, and their tables", fuzz_signal},
     {"history", "coordinates over time, of Exudyn, FMPy and MBDyn",
      fuzz_history},
+    {"frames", "collections of VTK and their frames, as charts draw them",
+     fuzz_frames},
     {"texts", "values of options", fuzz_texts},
     {"claims", "claims files; no tool is run", fuzz_claims},
     {"records", "files of --record", fuzz_records},

@@ -5,6 +5,7 @@
 #include "import/import.h"
 
 #include <ritz/basis.h>
+#include <ritz/export.h>
 #include <ritz/parts.h>
 #include <ritz/ranking.h>
 #include <ritz/recover.h>
@@ -102,6 +103,25 @@ void fuzz_history(const char *bytes, int64_t size)
         fuzz_judge(status);
     }
     free(list);
+}
+
+/* A frame, or a list of them. */
+void fuzz_frames(const char *bytes, int64_t size)
+{
+    RITZ_OWN(ritz_shapes) frame = {0};
+    char name[RITZ_COLLECTION_NAME];
+    double seconds = 0.0;
+    bool more = ritz_collection_recognise(bytes);
+
+    (void)size; /* text ends at its NUL */
+    fuzz_judge(ritz_frame_parse(bytes, &frame));
+    while (more) {
+        ritz_status status =
+            ritz_collection_next(&bytes, &seconds, name, &more);
+
+        fuzz_judge(status);
+        more = more && status == RITZ_OK;
+    }
 }
 
 /* --- values of options ---------------------------------------------------- */

@@ -17,7 +17,7 @@ expect 1 "cannot open 'none'" ritz-chart pareto none -o x.svg
 : >empty
 expect 1 "'empty' is empty" ritz-chart pareto empty -o x.svg
 echo 'one two' >words
-expect 1 "'words' is no container, no table of --tracks, and no file of" \
+expect 1 "'words' is no container, no table of --tracks, no collection of" \
     ritz-chart report words -o x.html
 printf '{"a":1}\n{"a":\n' >broken.jsonl
 expect 1 "'broken.jsonl', line 2: no JSON" ritz-chart pareto broken.jsonl \

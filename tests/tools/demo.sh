@@ -33,6 +33,7 @@ methods=craig-bampton,macneal-rubin
 for jobs in 1 4; do
     mkdir "$dir/$jobs"
     cp "$data"/*.bdf "$data"/*.op4 "$data"/*.yaml "$data"/*.gp "$data"/*.awk \
+        "$data"/*.py \
         "$data/Makefile" "$dir/$jobs"
     holds "the demonstration runs with -j $jobs" \
         make -C "$dir/$jobs" -j "$jobs" BIN="$bin" METHODS="$methods"

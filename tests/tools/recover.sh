@@ -126,6 +126,20 @@ END_PY
 works 'maxima, tables and pictures hold what the coordinates give' \
     $python pictures.py
 
+if command -v gnuplot >/dev/null; then
+    expect 0 '' ritz-chart motion acceleration.pvd -o shaken.svg
+    works '  four times, with the colours of stresses' sh -c \
+        'grep -q "2 s" shaken.svg && grep -q "|stress| 0 to" shaken.svg &&
+         [ "$(sed 1d shaken.svg.tsv | grep -c "^3.0")" = 62 ]'
+    expect 0 '' ritz-chart report acceleration.pvd -o report.html
+    expect 0 'Stresses in motion' cat report.html
+    expect 1 'holds a collection of frames, not a time response' \
+        ritz-chart simulation acceleration.pvd -o x.svg
+    sed 's/000000/999999/' acceleration.pvd >lost.pvd
+    sed -i 's/acceleration.frames/no.frames/' lost.pvd
+    expect 1 'no.frames/' ritz-chart motion lost.pvd -o x.svg
+fi
+
 # --- files of simulators -----------------------------------------------------------
 
 cat >write.py <<'END_PY'

@@ -23,6 +23,21 @@ static bool is_tracks(const char *path)
     return is;
 }
 
+/* A collection of VTK, told by the first kilobytes, behind comments. */
+static bool is_motion(const char *path)
+{
+    char head[1 << 14];
+    FILE *file = fopen(path, "r");
+    size_t size = 0;
+
+    if (!file)
+        return false;
+    size = fread(head, 1, sizeof head - 1, file);
+    fclose(file);
+    head[size] = '\0';
+    return ritz_collection_recognise(head);
+}
+
 /* Texts, which are told by how they begin. */
 static const struct text_kind {
     int holds;
@@ -31,6 +46,7 @@ static const struct text_kind {
 } texts[] = {
     {CHART_RECORDS, records_is, "run records"},
     {CHART_TRACKS, is_tracks, "a table of tracks"},
+    {CHART_MOTION, is_motion, "a collection of frames"},
 };
 
 enum { NUM_TEXTS = sizeof texts / sizeof *texts };
@@ -59,10 +75,11 @@ static ritz_status refuse_file(const char *path)
                    "'%s' is empty", path);
     RITZ_REFUSE_IF(S_ISDIR(file.st_mode), RITZ_ERR_FILE, "'%s' is a folder",
                    path);
-    return ritz_fail(RITZ_ERR_FORMAT,
-                     "'%s' is no container, no table of --tracks, and no file "
-                     "of --record",
-                     path);
+    return ritz_fail(
+        RITZ_ERR_FORMAT,
+        "'%s' is no container, no table of --tracks, no collection "
+        "of frames, and no file of --record",
+        path);
 }
 
 static ritz_status read_file(cli_run *run, const char *path, int holds,

@@ -14,16 +14,18 @@
 enum {
     CHART_RECORDS = MODEL_ANY + 1,
     CHART_TRACKS = 2 * CHART_RECORDS,
+    CHART_MOTION = 2 * CHART_TRACKS,
     CHART_MODES = MODEL_REDUCED | MODEL_BASIS | MODEL_COMPONENT,
-    CHART_REPORT = CHART_RECORDS | CHART_TRACKS | CHART_MODES | MODEL_RANKING |
-                   MODEL_SYSTEM | MODEL_RESPONSE | MODEL_SIMULATION,
+    CHART_REPORT = CHART_RECORDS | CHART_TRACKS | CHART_MOTION | CHART_MODES |
+                   MODEL_RANKING | MODEL_SYSTEM | MODEL_RESPONSE | MODEL_SIMULATION,
 };
 
 typedef struct chart_file {
     int holds;
     const char *path;
     model model; /* of a container */
-    char *text;  /* of tracks, which are cut up where they are drawn */
+    char *text;  /* of tracks, which are cut up where they are drawn, and of
+                    lists of frames */
 } chart_file;
 
 typedef struct chart_sources {
@@ -50,7 +52,7 @@ typedef ritz_status chart_draw(const chart_sources *sources,
                                const chart_request *request, picture *out);
 
 chart_draw chart_pareto, chart_convergence, chart_hankel, chart_response,
-    chart_mac, chart_tracks, chart_simulation;
+    chart_mac, chart_tracks, chart_simulation, chart_motion;
 
 typedef struct chart_kind {
     const char *name, *summary;

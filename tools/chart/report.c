@@ -43,6 +43,7 @@ static const struct part {
      same_points},
     {MODEL_SIMULATION, chart_simulation, "Time responses", 1, INT64_MAX,
      same_outputs},
+    {CHART_MOTION, chart_motion, "Stresses in motion", 1, 1, NULL},
     {CHART_MODES | MODEL_SYSTEM, chart_mac, "Mode shapes", 2, 2, NULL},
     {CHART_TRACKS, chart_tracks, "Modes over configurations", 1, 1, NULL},
 };

@@ -2,6 +2,7 @@
  * meshio reads them in tests/tools/recover.sh. */
 #include "testing.h"
 
+#include "damage.h"
 #include "folder.h"
 
 #include <ritz/export.h>
@@ -200,6 +201,121 @@ static void maxima_are_a_table(void **)
     expect(path, "\t0.10000000000000001\t0.25\n");
 }
 
+/* What pictures take of a collection is what was written. */
+static void frames_are_read_back(void **)
+{
+    RITZ_OWN(ritz_reduced) body = {0};
+    RITZ_OWN(ritz_shapes) frame = {0};
+    RITZ_OWN_ARRAY char *text = NULL;
+    char name[RITZ_COLLECTION_NAME], path[600];
+    const char *const list = folder_path("r.pvd");
+    const char *at = NULL;
+    double seconds = 0.0;
+    bool more = false;
+
+    make_body(&body);
+    assert_ok(write_series(&ritz_series_format_pvd, &body, list, 2));
+    assert_ok(ritz_text_read(list, &text));
+    assert_true(ritz_collection_recognise(text));
+    at = text;
+    assert_ok(ritz_collection_next(&at, &seconds, name, &more));
+    assert_ok(ritz_collection_next(&at, &seconds, name, &more));
+    assert_true(more);
+    assert_near(seconds, 0.125, 0.0);
+    assert_string_equal(name, "r.frames/000001.vtu");
+    snprintf(path, sizeof path, "%s", folder_path(name));
+    assert_ok(ritz_frame_read(path, &frame));
+    assert_int_equal(frame.num_points, 3);
+    assert_near(frame.position[6], 2.0, 0.0);
+    assert_near(frame.u.val[6], 2.0, 0.0);
+    assert_int_equal(frame.cells.count, 2);
+    assert_int_equal(frame.cells.grid[3], 2);
+    assert_string_equal(frame.field[0], "stress");
+    assert_near(frame.of_cell[1], -4.0, 0.0);
+    assert_ok(ritz_collection_next(&at, &seconds, name, &more));
+    assert_false(more);
+    for (int k = 0; k < 2; k++) {
+        snprintf(name, sizeof name, "r.frames/%06d.vtu", k);
+        assert_int_equal(remove(folder_path(name)), 0);
+    }
+    assert_int_equal(rmdir(folder_path("r.frames")), 0);
+}
+
+static const char one[] =
+    "<VTKFile type=\"UnstructuredGrid\">\n<Piece NumberOfPoints=\"2\" "
+    "NumberOfCells=\"1\">\n<DataArray type=\"Float64\" "
+    "Name=\"displacement\">\n0 0 1\n0 0 2\n</DataArray>\n<CellData>\n"
+    "<DataArray Name=\"stress\">\nnan\n</DataArray>\n</CellData>\n"
+    "<DataArray Name=\"Points\">\n0 0 0 1 0 0\n</DataArray>\n"
+    "<DataArray Name=\"connectivity\">\n0 1\n</DataArray>\n"
+    "<DataArray Name=\"offsets\">\n2\n</DataArray>\n"
+    "<DataArray Name=\"types\">\n3\n</DataArray>\n</Piece>\n";
+
+/* The text with one piece of it replaced. */
+static void refuse_with(const char *piece, const char *by, const char *words)
+{
+    const char *at = strstr(one, piece);
+    RITZ_OWN(ritz_shapes) frame = {0};
+    char text[1024];
+
+    assert_non_null(at);
+    snprintf(text, sizeof text, "%.*s%s%s", (int)(at - one), one, by,
+             at + strlen(piece));
+    assert_fails(ritz_frame_parse(text, &frame), RITZ_ERR_FORMAT, words);
+}
+
+static void other_frames_are_refused(void **)
+{
+    RITZ_OWN(ritz_shapes) frame = {0};
+    const char *list = "<DataSet timestep=\"1\" file=\"../x.vtu\"/>";
+    const char *timeless = "<DataSet file=\"x.vtu\"/>";
+    char name[RITZ_COLLECTION_NAME];
+    double seconds = 0.0;
+    bool more = false;
+
+    assert_ok(ritz_frame_parse(one, &frame));
+    assert_true(isnan(frame.of_cell[0]));
+    refuse_with("<Piece ", "<Part ", "is no unstructured grid");
+    refuse_with("\"2\"", "\"99999\"", "'NumberOfPoints' is no number");
+    refuse_with("\"2\"", "\"0\"", "holds no points");
+    refuse_with("0 0 2", "0 0", "'displacement' has not 6 numbers");
+    refuse_with("0 0 2", "0 0 2 3", "'displacement' has more than 6 numbers");
+    refuse_with("0 0 2", "0 0 inf", "'displacement' has not 6 numbers");
+    refuse_with("\"Points\"", "\"Point\"", "there is no array 'Points'");
+    refuse_with("\n0 1\n", "\n0 2\n",
+                "'connectivity' has not 2 numbers up to 1");
+    refuse_with("\n2\n</D", "\n1\n</D", "has not the points of its type");
+    refuse_with("\n3\n</D", "\n5\n</D", "has not the points of its type");
+    assert_fails(ritz_collection_next(&list, &seconds, name, &more),
+                 RITZ_ERR_FORMAT, "without a file beside the list");
+    assert_fails(ritz_collection_next(&timeless, &seconds, name, &more),
+                 RITZ_ERR_FORMAT, "without a time");
+}
+
+static ritz_status parse_bytes(const char *bytes, int64_t size)
+{
+    RITZ_OWN_ARRAY char *text = NULL;
+    RITZ_OWN(ritz_shapes) frame = {0};
+
+    RITZ_CHECK_NEW(text, size + 1);
+    memcpy(text, bytes, (size_t)size);
+    return ritz_frame_parse(text, &frame);
+}
+
+static ritz_status parse_once(void)
+{
+    RITZ_OWN(ritz_shapes) frame = {0};
+
+    return ritz_frame_parse(one, &frame);
+}
+
+static void damaged_frames_are_refused(void **)
+{
+    damage_cut(parse_bytes, one, (int64_t)strlen(one));
+    damage_corrupt(parse_bytes, one, (int64_t)strlen(one));
+    assert_survives_every_allocation(parse_once());
+}
+
 /* Frames get their names at once; a failure takes them away. */
 static void all_allocations_may_fail(void **)
 {
@@ -221,6 +337,9 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(an_xdmf_has_a_grid_for_each_time),
     cmocka_unit_test(a_place_that_cannot_be_written_is_refused),
     cmocka_unit_test(maxima_are_a_table),
+    cmocka_unit_test(frames_are_read_back),
+    cmocka_unit_test(other_frames_are_refused),
+    cmocka_unit_test(damaged_frames_are_refused),
     cmocka_unit_test(all_allocations_may_fail),
 };
 
