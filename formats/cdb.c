@@ -402,9 +402,14 @@ static ritz_status add_joined(ritz_cdb *all, int64_t node)
 static ritz_status begin_element(ritz_cdb *all, int64_t type, int64_t line,
                                  const int64_t *whole, int64_t from, int64_t to)
 {
+    const int64_t number = from == SOLID_FIELDS ? from - 1 : 0;
+
     RITZ_CHECK_ROOM(all->element, all->num_elements, all->elements_room);
     all->element[all->num_elements++] = (ritz_cdb_element){
-        .type = type, .first = all->num_joined, .line = line};
+        .id = number < to && whole[number] > 0 ? whole[number] : 0,
+        .type = type,
+        .first = all->num_joined,
+        .line = line};
     for (int64_t k = from; k < to; k++)
         RITZ_CHECK(add_joined(all, whole[k]));
     return RITZ_OK;

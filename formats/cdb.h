@@ -33,6 +33,7 @@ typedef struct ritz_cdb_type {
 } ritz_cdb_type;
 
 typedef struct ritz_cdb_element {
+    int64_t id;    /* 0: none */
     int64_t type;  /* the number of its element type */
     int64_t first; /* its first node in `joined` */
     int64_t count; /* nodes, with those that are 0 */

@@ -219,6 +219,7 @@ static ritz_status list_cells(const ritz_cdb *all, ritz_deck *out)
     RITZ_CHECK_NEW(cells->kind, all->num_elements);
     RITZ_CHECK_NEW(cells->first, all->num_elements + 1);
     RITZ_CHECK_NEW(cells->grid, all->num_joined);
+    RITZ_CHECK_NEW(cells->id, all->num_elements);
     out->num_strange = all->num_strange;
     for (int64_t k = 0; k < all->num_elements; k++) {
         const ritz_cdb_kind *kind = kind_of(all, &all->element[k]);
@@ -233,6 +234,7 @@ static ritz_status list_cells(const ritz_cdb *all, ritz_deck *out)
             continue;
         memcpy(cells->grid + first, cell.grid,
                (size_t)cell.count * sizeof *cell.grid);
+        cells->id[cells->count] = all->element[k].id;
         cells->kind[cells->count++] = cell.kind;
         cells->first[cells->count] = first + cell.count;
     }

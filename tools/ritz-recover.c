@@ -49,9 +49,10 @@ int main(int argc, char **argv)
         CLI_OUTPUT("maxima", &given.maxima, "FILE",
                    "container of the maxima of all rows"),
         CLI_OUTPUT("table", &given.table, "FILE", "the same as text with tabs"),
-        CLI_TEXT("transform", &given.transform, "modes|F",
-                 "coordinates of the history are of the model's modes, or x of "
-                 "q = V x with a matrix V, F being FILE[:NAME]"),
+        CLI_TEXT("transform", &given.transform, "modes|floating|F",
+                 "coordinates of the history are of the model's modes, as in "
+                 "an FMU, of those beside a floating frame, as in Exudyn and "
+                 "MBDyn, or x of q = V x with a matrix V, F being FILE[:NAME]"),
         CLI_TEXT("q", &given.q, "COLUMNS",
                  "columns of a table with coordinates, as 2-9, names or q*"),
         CLI_TEXT("v", &given.v, "COLUMNS", "columns with their rates"),

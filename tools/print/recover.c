@@ -1,6 +1,7 @@
 #include "print/print.h"
 
 #include "base/text.h"
+#include "model/floating.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -58,20 +59,46 @@ static ritz_status take_system(recovery *r)
     return ritz_dense_copy(&r->system.at->P[k], &r->V);
 }
 
+/* Modes of the component with the springs of its dampers, as an FMU has them. */
+static ritz_status take_modes(recovery *r)
+{
+    const ritz_reduced *reduced = &r->body.reduced;
+    RITZ_OWN(ritz_reduced) whole = {0};
+    RITZ_OWN(ritz_dense) same = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
+
+    RITZ_CHECK(ritz_dense_identity(reduced->K.ncol, &same));
+    RITZ_CHECK(ritz_reduced_project(reduced, &same, &whole));
+    RITZ_CHECK(ritz_reduced_install(&whole));
+    RITZ_CHECK(ritz_eigen_dense(&whole.K, &whole.M, &pairs));
+    RITZ_MOVE(r->V, pairs.Phi);
+    return RITZ_OK;
+}
+
+/* Modes beside a floating frame, as Exudyn and MBDyn get them. */
+static ritz_status take_floating(recovery *r)
+{
+    const ritz_floating_request usual = {0};
+    RITZ_OWN(ritz_floating) body = {0};
+
+    RITZ_CHECK_IN(r->given->component,
+                  ritz_floating_of(&r->body.reduced, &usual, &body));
+    RITZ_MOVE(r->V, body.V);
+    return RITZ_OK;
+}
+
 /* Modes of the component, or a matrix of a file. */
 static ritz_status take_transform(recovery *r)
 {
     const ritz_reduced *reduced = &r->body.reduced;
-    RITZ_OWN(ritz_pairs) pairs = {0};
     RITZ_OWN(ritz_matrix) matrix = {0};
     RITZ_OWN(ritz_file_sums) sums = {0};
     const ritz_wanted wanted = {r->given->transform, NULL, &matrix};
 
-    if (strcmp(r->given->transform, "modes") == 0) {
-        RITZ_CHECK(ritz_eigen_dense(&reduced->K, &reduced->M, &pairs));
-        RITZ_MOVE(r->V, pairs.Phi);
-        return RITZ_OK;
-    }
+    if (strcmp(r->given->transform, "modes") == 0)
+        return take_modes(r);
+    if (strcmp(r->given->transform, "floating") == 0)
+        return take_floating(r);
     RITZ_CHECK_IN("--transform", ritz_foreign_collect(1, &wanted, &sums));
     for (int64_t k = 0; k < sums.count; k++) {
         RITZ_CHECK(cli_input_unread(r->run, sums.sum[k].path));

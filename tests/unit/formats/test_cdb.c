@@ -115,6 +115,8 @@ static void elements_become_cells(void **state)
                    "  -1\nTYPE,4\nEBLOCK,10\n(15i3)\n  9  1  1  1  0 20\n -1\n",
                    &deck));
     assert_int_equal(deck.elements.count, 5);
+    assert_int_equal(deck.elements.id[1], 2);
+    assert_int_equal(deck.elements.id[4], 5);
     assert_cell(&deck, 0, RITZ_CELL_HEXA, 8, brick);
     assert_cell(&deck, 1, RITZ_CELL_WEDGE, 6, wedge);
     assert_cell(&deck, 2, RITZ_CELL_TETRA, 4, tetra);

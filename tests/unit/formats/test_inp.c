@@ -100,6 +100,8 @@ static void elements_are_drawn_as_they_are_written(void **state)
     (void)state;
     assert_ok(parse(TEXT, &deck));
     assert_int_equal(deck.elements.count, 6);
+    assert_int_equal(deck.elements.id[3], 9); /* both halves of a bent line */
+    assert_int_equal(deck.elements.id[5], 13);
     assert_int_equal(deck.num_strange, 2);
     assert_cell(&deck.elements, 0,
                 "25: 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20");

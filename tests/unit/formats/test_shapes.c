@@ -116,6 +116,8 @@ static void elements_with_strange_grids_are_counted(void **state)
     assert_ok(
         ritz_deck_parse("a.bdf", deck, (int64_t)strlen(deck), ".", &bulk));
     assert_int_equal(bulk.elements.count, 2);
+    assert_int_equal(bulk.elements.id[0], 1);
+    assert_int_equal(bulk.elements.id[1], 5);
     /* one grid of a bar is a spring to the ground, of a triangle nothing */
     assert_int_equal(bulk.num_strange, 1);
     assert_int_equal(bulk.elements.kind[1], RITZ_CELL_HEXA);

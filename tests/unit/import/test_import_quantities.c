@@ -9,6 +9,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 #define ARRAY "%%MatrixMarket matrix array real general\n"
 
@@ -112,6 +113,38 @@ static void rows_of_dependent_dofs_follow_the_others(void **)
         assert_near(S.val[k], k == 1 ? 3.0 : k == 5 ? 6.0 : 0.0, 0.0);
 }
 
+/* MUG1 and MEF1 as NASTRAN wrote them for an external superelement. */
+static void rows_of_nastran_come_with_its_superelement(void **)
+{
+    const char *const data = getenv("RITZ_EXTERNAL_DATA");
+    char op4[2048], mug1[4096], mef1[4096];
+    const char *recovery[] = {mug1, mef1};
+    RITZ_OWN(ritz_superelement) found = {0};
+    RITZ_OWN(ritz_import_report) report = {0};
+    RITZ_OWN(ritz_component) c = {0};
+    ritz_import_request request = {0};
+
+    snprintf(op4, sizeof op4, "%s/nastran/nas2cam_csuper/inboard.op4",
+             data ? data : ".");
+    if (access(op4, R_OK) != 0) {
+        print_message("skipped: %s is not there\n", op4);
+        return;
+    }
+    snprintf(mug1, sizeof mug1, "drift=%s:MUG1,displacement", op4);
+    snprintf(mef1, sizeof mef1, "force=%s:MEF1", op4);
+    assert_ok(ritz_superelement_find(op4, &found));
+    request = (ritz_import_request){.stiffness = found.stiffness,
+                                    .mass = found.mass,
+                                    .bulk = found.bulk,
+                                    .num_recoveries = 2,
+                                    .recovery = recovery};
+    assert_ok(ritz_import(&request, &c, &report));
+    assert_int_equal(c.num_dofs, 32);
+    assert_int_equal(c.quantity[0].count, 36);
+    assert_int_equal(c.quantity[1].count, 16);
+    assert_string_equal(c.quantity[1].kind, "force");
+}
+
 static void refuse(const char *recovery, const char *rows, ritz_status code,
                    const char *words)
 {
@@ -190,6 +223,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(rows_come_with_their_names),
     cmocka_unit_test(rows_may_be_columns),
     cmocka_unit_test(rows_of_dependent_dofs_follow_the_others),
+    cmocka_unit_test(rows_of_nastran_come_with_its_superelement),
     cmocka_unit_test(what_does_not_fit_is_refused),
     cmocka_unit_test(two_of_a_name_are_refused),
     cmocka_unit_test(all_allocations_may_fail),
