@@ -1,4 +1,4 @@
-/* Importing: small decks and matrices written here, and real ones. */
+/* Importing small decks and matrices that are written here. */
 #include "testing.h"
 
 #include "folder.h"
@@ -8,23 +8,6 @@
 #include <ritz/matrix.h>
 
 #include <stdio.h>
-#include <stdlib.h>
-
-/* A file of somebody else; NULL and a word if it is not there. */
-static const char *external(const char *variable, const char *name)
-{
-    static char path[4][512];
-    static int turn = 0;
-    const char *where = getenv(variable);
-
-    if (!where) {
-        print_message("skipped: no %s\n", variable);
-        return NULL;
-    }
-    turn = (turn + 1) % 4;
-    snprintf(path[turn], sizeof path[turn], "%s/%s", where, name);
-    return path[turn];
-}
 
 /* Three grids (7 turned by 90 degrees about z) and a point between them. */
 static const char deck[] = "BEGIN BULK\n"
@@ -455,34 +438,6 @@ static void wrong_inputs_and_outputs_are_refused(void **)
                  "two outputs 'a'");
 }
 
-/* K + i K4 of one spring, as Matrix Market has it; imaginary zeros are none. */
-static void a_complex_stiffness_brings_structural_damping(void **)
-{
-    ritz_import_request request = {.rows = "0"};
-    RITZ_OWN(ritz_import_report) report = {0}, again = {0};
-    RITZ_OWN(ritz_component) c = {0}, real = {0};
-
-    request.stiffness =
-        folder_write("k.mtx", "%%MatrixMarket matrix coordinate complex "
-                              "symmetric\n2 2 3\n1 1 5 0.25\n2 1 -3 0.125\n"
-                              "2 2 4 0.5\n");
-    request.mass =
-        folder_write("m.mtx", "%%MatrixMarket matrix coordinate complex "
-                              "general\n2 2 2\n1 1 2 0\n2 2 1 0\n");
-    assert_ok(ritz_import(&request, &c, &report));
-    assert_true(ritz_sparse_diagonal(&c.K, 0) == 5.0);
-    assert_true(ritz_sparse_diagonal(&c.K4, 1) == 0.5);
-    assert_int_equal(c.K4.colptr[2], 4);
-    assert_true(c.K4.val[1] == 0.125 && c.K.val[1] == -3.0);
-    request.stiffness = request.mass;
-    assert_ok(ritz_import(&request, &real, &again));
-    assert_int_equal(real.K4.nrow, 0);
-    request.stiffness = folder_path("k.mtx");
-    request.structural_damping = request.mass;
-    assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_FORMAT,
-                 "is complex: only a stiffness may be, K + i K4");
-}
-
 static void wrong_matrices_are_refused(void **)
 {
     ritz_import_request request = {0};
@@ -592,134 +547,6 @@ static void no_allocation_failure_leaks(void **)
     assert_survives_every_allocation(import_and_free(&request));
 }
 
-/* What a real pair of matrices must come to. */
-typedef struct real {
-    const char *variable, *stiffness, *mass, *bulk;
-    int64_t dofs, removed;
-    double hertz; /* first flexible frequency; 0: rigid */
-    double bound; /* half a unit of its last digit */
-} real;
-
-#define SOLVERS "nastran/public_solvers/"
-#define CSUPER  "nastran/nas2cam_csuper/"
-/* data/dualspin/SOURCE.md; inboard, mystran, csuper: measured here */
-static const real cases[] = {
-    {"RITZ_DATA", "dualspin/rotor.op4:KGG", "dualspin/rotor.op4:MGG",
-     "dualspin/rotor.bdf", 243, 3, 0.19878, 5e-6},
-    {"RITZ_DATA", "dualspin/stator.op4:KGG", "dualspin/stator.op4:MGG",
-     "dualspin/stator.bdf", 57, 3, 6.76982, 5e-6},
-    {"RITZ_DATA", NULL, "dualspin/platform.op4:MGG", "dualspin/platform.bdf", 6,
-     0, 0.0, 0.0},
-    {"RITZ_EXTERNAL_DATA", SOLVERS "nastran95_inboard.op4:KGG",
-     SOLVERS "nastran95_inboard.op4:MGG", SOLVERS "nastran95_inboard.deck", 156,
-     0, 47.9210, 5e-5},
-    {"RITZ_EXTERNAL_DATA", SOLVERS "mystran_outboard.op4:KGG",
-     SOLVERS "mystran_outboard.op4:MGG", SOLVERS "mystran_outboard.dat", 156, 0,
-     1.72508, 5e-6},
-    {"RITZ_EXTERNAL_DATA", CSUPER "inboard.op4:KXX", CSUPER "inboard.op4:MXX",
-     CSUPER "inboard.dat", 32, 0, 47.9267, 5e-5},
-    /* oracles.md section 7 */
-    {"RITZ_EXTERNAL_DATA", "nastran/pynastran/dmig.pch:KAAX",
-     "nastran/pynastran/dmig.pch:MAAX", NULL, 15, 0, 1.033490, 5e-7},
-};
-
-/* The first flexible frequency; 0 of a rigid component. */
-static double first_hertz(const ritz_component *c)
-{
-    const ritz_span span = {.modes = 1};
-    ritz_pairs pairs = {0};
-    double hertz = 0.0;
-
-    if (c->K.colptr[c->num_dofs] == 0)
-        return 0.0;
-    assert_ok(ritz_eigen_sparse(&c->K, &c->M, &span, &pairs));
-    hertz = ritz_eigen_hertz(pairs.lambda[pairs.num_rigid]);
-    ritz_pairs_free(&pairs);
-    return hertz;
-}
-
-static void check_real(const real *it)
-{
-    ritz_import_request request = {0};
-    ritz_import_report report = {0};
-    ritz_component c = {0};
-
-    request.mass = external(it->variable, it->mass);
-    if (!request.mass)
-        return;
-    if (it->stiffness)
-        request.stiffness = external(it->variable, it->stiffness);
-    if (it->bulk)
-        request.bulk = external(it->variable, it->bulk);
-    assert_ok(ritz_import(&request, &c, &report));
-    assert_int_equal(c.num_dofs, it->dofs);
-    assert_int_equal(report.num_removed, it->removed);
-    assert_near(first_hertz(&c), it->hertz, it->bound);
-    ritz_component_free(&c);
-    ritz_import_report_free(&report);
-}
-
-static void real_files_become_components(void **)
-{
-    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
-        check_real(&cases[k]);
-}
-
-/* Node numbers of a dof map, three dofs each, as a file of names. */
-static void convert_map(const char *path)
-{
-    char line[128];
-    char text[8192] = "";
-    size_t used = 0;
-    bool sized = false;
-    FILE *file = fopen(path, "r");
-
-    assert_non_null(file);
-    while (fgets(line, sizeof line, file)) {
-        long node = strtol(line, NULL, 10);
-
-        if (line[0] == '%')
-            continue;
-        for (int k = 1; sized && node > 0 && k <= 3; k++)
-            used += (size_t)snprintf(text + used, sizeof text - used,
-                                     "%ld %d\n", node, k);
-        sized = true;
-    }
-    fclose(file);
-    folder_write("dofs", text);
-}
-
-static void a_dof_map_names_the_rows_of_the_rotor(void **)
-{
-    const char *map =
-        external("RITZ_EXTERNAL_DATA", "ansys/rotorAnsysMatrixDofMappingVector"
-                                       ".txt");
-    const char *const ports[] = {"axis=1-7:123"};
-    /* oracles.md section 7 */
-    const double hertz[] = {104.637011, 104.637011, 187.824087, 212.329701};
-    const ritz_span span = {.modes = 4};
-    ritz_import_request request = {.num_ports = 1, .port = ports};
-    RITZ_OWN(ritz_import_report) report = {0};
-    RITZ_OWN(ritz_component) c = {0};
-    RITZ_OWN(ritz_pairs) pairs = {0};
-
-    if (!map)
-        skip();
-    convert_map(map);
-    request.dofs = folder_path("dofs");
-    request.stiffness = external("RITZ_EXTERNAL_DATA",
-                                 "ansys/rotorAnsysStiffnessMatrixSparse.txt");
-    request.mass =
-        external("RITZ_EXTERNAL_DATA", "ansys/rotorAnsysMassMatrixSparse.txt");
-    assert_ok(ritz_import(&request, &c, &report));
-    assert_int_equal(c.num_dofs, 345);
-    assert_int_equal(c.port[0].dofs.count, 21);
-    assert_ok(ritz_eigen_sparse(&c.K, &c.M, &span, &pairs));
-    assert_int_equal(pairs.num_rigid, 6);
-    for (int k = 0; k < 4; k++)
-        assert_near(ritz_eigen_hertz(pairs.lambda[6 + k]), hertz[k], 5e-7);
-}
-
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(grids_ascend_with_six_rows_and_points_with_one),
     cmocka_unit_test(rows_empty_in_both_are_removed_and_others_stay),
@@ -736,12 +563,9 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(wrong_dampers_are_refused),
     cmocka_unit_test(wrong_ports_are_refused),
     cmocka_unit_test(wrong_inputs_and_outputs_are_refused),
-    cmocka_unit_test(a_complex_stiffness_brings_structural_damping),
     cmocka_unit_test(wrong_matrices_are_refused),
     cmocka_unit_test(asymmetry_is_refused_unless_it_is_to_be_averaged),
     cmocka_unit_test(no_allocation_failure_leaks),
-    cmocka_unit_test(real_files_become_components),
-    cmocka_unit_test(a_dof_map_names_the_rows_of_the_rotor),
 };
 
 TEST_MODULE(import, tests, folder_make, folder_remove)

@@ -116,6 +116,35 @@ static void the_imaginary_part_of_a_stiffness_is_damping(void **state)
     assert_true(matrix_entry(&polar.K, polar.K.val, 1, 1) == 2.0);
 }
 
+/* K + i K4 of one spring, as Matrix Market has it; imaginary zeros are none. */
+static void a_complex_stiffness_brings_structural_damping(void **state)
+{
+    ritz_import_request request = {.rows = "0"};
+    RITZ_OWN(ritz_import_report) report = {0}, again = {0};
+    RITZ_OWN(ritz_component) c = {0}, real = {0};
+
+    (void)state;
+    request.stiffness =
+        folder_write("k.mtx", "%%MatrixMarket matrix coordinate complex "
+                              "symmetric\n2 2 3\n1 1 5 0.25\n2 1 -3 0.125\n"
+                              "2 2 4 0.5\n");
+    request.mass =
+        folder_write("m.mtx", "%%MatrixMarket matrix coordinate complex "
+                              "general\n2 2 2\n1 1 2 0\n2 2 1 0\n");
+    assert_ok(ritz_import(&request, &c, &report));
+    assert_true(ritz_sparse_diagonal(&c.K, 0) == 5.0);
+    assert_true(ritz_sparse_diagonal(&c.K4, 1) == 0.5);
+    assert_int_equal(c.K4.colptr[2], 4);
+    assert_true(c.K4.val[1] == 0.125 && c.K.val[1] == -3.0);
+    request.stiffness = request.mass;
+    assert_ok(ritz_import(&request, &real, &again));
+    assert_int_equal(real.K4.nrow, 0);
+    request.stiffness = folder_path("k.mtx");
+    request.structural_damping = request.mass;
+    assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_FORMAT,
+                 "is complex: only a stiffness may be, K + i K4");
+}
+
 static void other_complex_matrices_are_refused(void **state)
 {
     ritz_import_request request = {0};
@@ -320,6 +349,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(rows_are_those_of_extrn_in_its_order),
     cmocka_unit_test(rows_that_do_not_fit_are_refused),
     cmocka_unit_test(the_imaginary_part_of_a_stiffness_is_damping),
+    cmocka_unit_test(a_complex_stiffness_brings_structural_damping),
     cmocka_unit_test(other_complex_matrices_are_refused),
     cmocka_unit_test(null_columns_of_a_rectangular_dmig_are_inputs),
     cmocka_unit_test(files_are_found_by_their_names),
