@@ -206,18 +206,18 @@ static ritz_status settle_hub(spacecraft *s)
 
 static ritz_status check_interface(const spacecraft *s, const char *units)
 {
-    double rigid = 0.0, flexible = 0.0;
+    ritz_interface_ground ground = {0};
 
     RITZ_CHECK(ritz_export_demand_si(units, "Basilisk"));
     RITZ_REFUSE_IF(s->form.count != 1, RITZ_ERR_ARGUMENT,
                    "Basilisk holds a flexible part by one grid, and the ports "
                    "have %" PRId64 ": name the port at the hub with --port",
                    s->form.count);
-    RITZ_CHECK(ritz_interface_form_held(&s->form, &rigid, &flexible));
-    RITZ_REFUSE_IF(rigid > RITZ_HELD * flexible, RITZ_ERR_ARGUMENT,
+    RITZ_CHECK(ritz_interface_form_ground(&s->form, &ground));
+    RITZ_REFUSE_IF(ground.holds, RITZ_ERR_ARGUMENT,
                    "the body is held at the ground, at %.3g Hz, and a "
                    "spacecraft is free: import it without supports",
-                   rigid);
+                   ground.rigid_hz);
     return RITZ_OK;
 }
 

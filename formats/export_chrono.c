@@ -13,7 +13,6 @@
  * rotations, and then modes. Numbers have 17 digits.
  */
 #include "base/alloc.h"
-#include "base/tolerances.h"
 #include "formats/certificate.h"
 #include "formats/sink.h"
 #include "model/interface_form.h"
@@ -85,18 +84,18 @@ static ritz_status say_load(const chrono_load *load,
                             const ritz_reduced *reduced,
                             ritz_export_report *report)
 {
-    double rigid = 0.0, flexible = 0.0;
+    ritz_interface_ground ground = {0};
 
-    RITZ_CHECK(ritz_interface_form_held(&load->form, &rigid, &flexible));
+    RITZ_CHECK(ritz_interface_form_ground(&load->form, &ground));
     RITZ_CHECK(ritz_export_say(
         report, "%" PRId64 " interface %s and %" PRId64 " modes; all digits",
         load->form.count, load->form.count == 1 ? "frame" : "frames",
         count_modes(load)));
-    if (rigid > RITZ_HELD * flexible)
+    if (ground.holds)
         RITZ_CHECK(ritz_export_say(report,
                                    "the ground holds the body: rigid motion "
                                    "has %.3g Hz",
-                                   rigid));
+                                   ground.rigid_hz));
     if (reduced->K4.val)
         RITZ_CHECK(ritz_export_say(report, "structural damping is left out"));
     return ritz_export_say(report,

@@ -11,7 +11,6 @@
  *     units, certificate   text
  */
 #include "base/alloc.h"
-#include "base/tolerances.h"
 #include "formats/certificate.h"
 #include "formats/mat_sheet.h"
 #include "model/interface_form.h"
@@ -24,7 +23,7 @@ typedef struct flexible_solid {
     double *origin, *turn; /* P and Q, column-major */
     char (*name)[RITZ_NAME_SIZE];
     char *certificate;
-    double rigid_hz, flexible_hz; /* as ritz_interface_form_held has them */
+    ritz_interface_ground ground;
 } flexible_solid;
 
 static void flexible_solid_free(flexible_solid *s)
@@ -103,14 +102,14 @@ static ritz_status say_coordinates(const flexible_solid *s,
     return ritz_export_say(report,
                            "rigid motions at %.2g Hz at most, the first "
                            "flexible mode at %.6g Hz",
-                           s->rigid_hz, s->flexible_hz);
+                           s->ground.rigid_hz, s->ground.flexible_hz);
 }
 
 static ritz_status say_losses(const flexible_solid *s,
                               const ritz_reduced *reduced,
                               ritz_export_report *report)
 {
-    if (s->rigid_hz > RITZ_HELD * s->flexible_hz)
+    if (s->ground.holds)
         RITZ_CHECK(ritz_export_say(
             report, "warning: the ground holds the body, and Simscape lets "
                     "its solids move freely: import it without supports"));
@@ -135,7 +134,7 @@ static ritz_status write_solid(const ritz_export_object *object,
     RITZ_OWN(flexible_solid) s = {0};
 
     RITZ_CHECK(ritz_interface_form_of(reduced, request->ports, &s.form));
-    RITZ_CHECK(ritz_interface_form_held(&s.form, &s.rigid_hz, &s.flexible_hz));
+    RITZ_CHECK(ritz_interface_form_ground(&s.form, &s.ground));
     RITZ_CHECK(list_frames(&s));
     RITZ_CHECK(ritz_certificate(object, request->stamp, &s.certificate));
     RITZ_CHECK_IN(request->output, write_file(request->output, reduced, &s));

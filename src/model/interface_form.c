@@ -447,13 +447,13 @@ ritz_status ritz_interface_form_of(const ritz_reduced *reduced,
     return RITZ_OK;
 }
 
-ritz_status ritz_interface_form_held(const ritz_interface_form *form,
-                                     double *rigid_hz, double *flexible_hz)
+ritz_status ritz_interface_form_ground(const ritz_interface_form *form,
+                                       ritz_interface_ground *out)
 {
     RITZ_OWN(ritz_dense) R = {0}, K = {0}, M = {0};
     RITZ_OWN(ritz_pairs) pairs = {0};
 
-    *rigid_hz = *flexible_hz = 0.0;
+    *out = (ritz_interface_ground){0};
     RITZ_CHECK(move_rigidly(form, form->K.ncol, &R));
     RITZ_CHECK(ritz_dense_congruence(&form->K, &R, &K));
     RITZ_CHECK(ritz_dense_congruence(&form->M, &R, &M));
@@ -462,10 +462,12 @@ ritz_status ritz_interface_form_held(const ritz_interface_form *form,
         const double stiffness = fabs(ritz_dense_col(&K, j)[j]);
 
         if (mass > 0.0)
-            *rigid_hz = fmax(*rigid_hz, ritz_eigen_hertz(stiffness / mass));
+            out->rigid_hz =
+                fmax(out->rigid_hz, ritz_eigen_hertz(stiffness / mass));
     }
     RITZ_CHECK(ritz_eigen_dense(&form->K, &form->M, &pairs));
     if (pairs.num_rigid < pairs.Phi.ncol)
-        *flexible_hz = ritz_eigen_hertz(pairs.lambda[pairs.num_rigid]);
+        out->flexible_hz = ritz_eigen_hertz(pairs.lambda[pairs.num_rigid]);
+    out->holds = out->rigid_hz > RITZ_HELD * out->flexible_hz;
     return RITZ_OK;
 }

@@ -51,16 +51,17 @@ typedef struct ritz_interface_form {
 ritz_status ritz_interface_form_of(const ritz_reduced *reduced,
                                    const char *ports, ritz_interface_form *out);
 
-/**
- * Whether the ground holds the body: the largest sqrt(r'K r / r'M r) of the six
- * rigid motions r of the interface, and the first flexible frequency, with
- * which it is to be compared.
- *
- * @param[out] rigid_hz     0 but for rounding where the body is free  [Hz]
- * @param[out] flexible_hz  0 if no mode is flexible  [Hz]
- */
-ritz_status ritz_interface_form_held(const ritz_interface_form *form,
-                                     double *rigid_hz, double *flexible_hz);
+/* How the ground holds a body. */
+typedef struct ritz_interface_ground {
+    double rigid_hz;    /* largest sqrt(r'K r / r'M r) of the six rigid motions
+                           r of the interface; rounding where it is free */
+    double flexible_hz; /* of the first flexible mode; 0: there is none */
+    bool holds;         /* rigid_hz is more than RITZ_HELD of flexible_hz */
+} ritz_interface_ground;
+
+/** Whether the ground holds the body, and how stiffly. @cost O(r^3) */
+ritz_status ritz_interface_form_ground(const ritz_interface_form *form,
+                                       ritz_interface_ground *out);
 
 void ritz_interface_form_free(ritz_interface_form *form);
 

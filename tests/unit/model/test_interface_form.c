@@ -1,5 +1,4 @@
 /* Reduced components in coordinates that begin with the motions of ports. */
-#include "base/tolerances.h"
 #include "model/interface_form.h"
 #include "testing.h"
 
@@ -128,7 +127,7 @@ static void a_free_basis_takes_the_form(void **state)
     RITZ_OWN(ritz_interface_form) form = {0};
     RITZ_OWN(ritz_dense) x = {0};
     RITZ_OWN(ritz_pairs) before = {0}, after = {0};
-    double rigid = 1.0, flexible = 0.0;
+    ritz_interface_ground ground = {.rigid_hz = 1.0};
 
     assert_ok(attach(*state, "g4", &ritz_method_macneal_rubin, &reduced));
     assert_ok(ritz_interface_form_of(&reduced, "g4", &form));
@@ -146,9 +145,11 @@ static void a_free_basis_takes_the_form(void **state)
         assert_near(after.lambda[k], before.lambda[k],
                     1e-10 * before.lambda[form.K.ncol - 1]);
     /* the stiffness of rigid motion is eps of the largest lambda, measured */
-    assert_ok(ritz_interface_form_held(&form, &rigid, &flexible));
-    assert_near(flexible, ritz_eigen_hertz(before.lambda[6]), 1e-9 * flexible);
-    assert_true(rigid <= 1e-6 * flexible);
+    assert_ok(ritz_interface_form_ground(&form, &ground));
+    assert_near(ground.flexible_hz, ritz_eigen_hertz(before.lambda[6]),
+                1e-9 * ground.flexible_hz);
+    assert_false(ground.holds);
+    assert_true(ground.rigid_hz <= 1e-6 * ground.flexible_hz);
 }
 
 /* Its columns bend as the attached dofs move: they are no modes of the held
@@ -157,14 +158,14 @@ static void columns_that_bend_with_the_interface_are_modes_after(void **state)
 {
     RITZ_OWN(ritz_reduced) reduced = {0};
     RITZ_OWN(ritz_interface_form) form = {0};
-    double rigid = 1.0, flexible = 0.0;
+    ritz_interface_ground ground = {.rigid_hz = 1.0};
 
     assert_ok(attach(*state, "g1,g4", &ritz_method_rubin, &reduced));
     assert_ok(ritz_interface_form_of(&reduced, NULL, &form));
     assert_false(form.kept);
     assert_blocks(&form, 12);
-    assert_ok(ritz_interface_form_held(&form, &rigid, &flexible));
-    assert_true(rigid <= 1e-6 * flexible);
+    assert_ok(ritz_interface_form_ground(&form, &ground));
+    assert_true(ground.rigid_hz <= 1e-6 * ground.flexible_hz);
 }
 
 /* Twice the diagonal of K: springs of the ground as stiff as the body. */
@@ -172,14 +173,14 @@ static void a_held_body_is_told(void **state)
 {
     RITZ_OWN(ritz_reduced) reduced = {0};
     RITZ_OWN(ritz_interface_form) form = {0};
-    double rigid = 0.0, flexible = 0.0;
+    ritz_interface_ground ground = {0};
 
     assert_ok(attach(*state, "g1,g4", &ritz_method_craig_bampton, &reduced));
     for (int64_t i = 0; i < 6; i++)
         ritz_dense_col(&reduced.K, i)[i] *= 2.0;
     assert_ok(ritz_interface_form_of(&reduced, NULL, &form));
-    assert_ok(ritz_interface_form_held(&form, &rigid, &flexible));
-    assert_true(rigid > RITZ_HELD * flexible);
+    assert_ok(ritz_interface_form_ground(&form, &ground));
+    assert_true(ground.holds);
 }
 
 static void assert_refused(const ritz_reduced *reduced, const char *ports,
@@ -267,10 +268,10 @@ static void what_is_loose_is_carried_along(void **state)
 static ritz_status form_once(const ritz_reduced *reduced, const char *ports)
 {
     RITZ_OWN(ritz_interface_form) form = {0};
-    double rigid = 0.0, flexible = 0.0;
+    ritz_interface_ground ground = {0};
 
     RITZ_CHECK(ritz_interface_form_of(reduced, ports, &form));
-    return ritz_interface_form_held(&form, &rigid, &flexible);
+    return ritz_interface_form_ground(&form, &ground);
 }
 
 static void no_allocation_failure_leaks(void **state)
