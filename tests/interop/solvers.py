@@ -96,5 +96,5 @@ def printed_hertz(text):
 
 
 def printed_complex_hertz(text):
-    """Those of NASTRAN-95's summary of complex eigenvalues."""
+    """Frequencies of NASTRAN-95's summary of complex eigenvalues."""
     return rows_below("E I G E N V A L U E   S U M M A R Y", COMPLEX, text, 3)

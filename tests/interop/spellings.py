@@ -292,7 +292,7 @@ def sparse(group):
 
 
 def read(path):
-    """What a component says, in names."""
+    """Matrices, dofs, grids and elements of a component, by their names."""
     with h5py.File(path) as f:
         found = {"K": sparse(f["K"]), "M": sparse(f["M"])}
         for name in ("dofs/grid", "dofs/component", "grids/id",
@@ -305,7 +305,7 @@ def read(path):
 def compare(tap, title, first, found, rounding):
     for name, expected in first.items():
         if name in "KM":
-            # each entry by itself; zeros are zeros in all
+            # entries are compared one by one; a zero is a zero in all
             error = numpy.abs(found[name] - expected)
             tap.check(found[name].shape == expected.shape
                       and (error <= rounding * 10.0 * numpy.abs(expected))

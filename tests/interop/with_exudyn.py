@@ -306,7 +306,8 @@ def centre_of(block):
 
 
 def displacement(body, node, axis, state):
-    """Of a node, from where it was; A - I by itself keeps small ones."""
+    """Displacement of a node along an axis; A - I keeps the digits of small
+    rotations A."""
     q = state[0]
     w, x, y, z = q[3:7] + [1, 0, 0, 0]
     turned = 2.0 * numpy.array(

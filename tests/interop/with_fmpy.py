@@ -177,7 +177,7 @@ def check_states_saved(tap, title, model, fmu):
 
 
 def check_exchange(tap, tools, title, model, fmu):
-    """FMPy's own loops, of constant inputs."""
+    """FMPy's own loops give the same, for constant inputs."""
     words = [word for name in model["inputs"]
              for word in ("--input", f"{name}=step")]
     rows = table(tools, model["file"], *model["options"], *words,

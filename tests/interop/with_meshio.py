@@ -15,7 +15,7 @@ BRICKS = 4, 2, 2
 
 
 def add_elements(tools):
-    """CHEXA of Block, whose grids are 1, 2, ... along z, y and x."""
+    """Bricks of Block as CHEXA; grids are 1, 2, ... along z, then y, then x."""
     index = numpy.arange(numpy.prod(numpy.add(BRICKS, 1))).reshape(
         numpy.add(BRICKS, 1)) + 1
     lines, bricks = [], []

@@ -63,7 +63,7 @@ class Mbdyn:
     def run(self, name):
         """Files NAME.* of a run of NAME.mbdyn as it stands in the folder, and
         what was printed."""
-        # it reads variables of the environment that begin with MBDYN
+        # MBDyn reads variables of the environment that begin with MBDYN
         done = subprocess.run(
             [self.program, "-P", "-f", f"{name}.mbdyn", "-o", name],
             cwd=self.tools.folder, env={"PATH": os.defpath}, text=True,
@@ -78,18 +78,18 @@ class Mbdyn:
         return A.reshape(2 * (round(len(A) ** 0.5),))
 
     def mass_found(self, said):
-        """The modal mass that it finds in the masses of nodes."""
+        """The modal mass that MBDyn finds in the masses of nodes."""
         rows = said.split("Generalized mass: input - computed\n")[1]
         rows = rows.splitlines()[:len(self.matrix(9))]
         return self.matrix(9) - numpy.array([row.split() for row in rows],
                                             dtype=float)
 
     def mass(self):
-        """Of the body of the last run, by group 11."""
+        """Mass of the body of the last run, by group 11."""
         return numpy.array(self.groups[11], dtype=float)[::6].sum()
 
     def frequencies(self, name):
-        """Of the eigenanalysis: those of oscillations, in Hz, ascending."""
+        """Hz of the oscillations among the eigenvalues, ascending."""
         text = open(self.tools.path(name + "_0.m")).read()
         step = float(text.split("dCoef = ")[1].split(";")[0])
         rows = text.split("alpha = [")[1].split("]")[0].replace(";", "\n")
