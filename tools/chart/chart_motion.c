@@ -1,4 +1,5 @@
 /* A body at four times of its motion, deformed, with stresses as colours. */
+#include "base/text.h"
 #include "chart/chart.h"
 
 #include "base/tolerances.h"
@@ -59,7 +60,7 @@ static ritz_status read_frame(const chart_sources *sources, const char *name,
                               ritz_shapes *out)
 {
     const char *list = sources->file->path;
-    const char *base = picture_base(list);
+    const char *base = ritz_path_name(list);
     char path[PICTURE_PATH + RITZ_COLLECTION_NAME];
 
     snprintf(path, sizeof path, "%.*s%s", (int)(base - list), list, name);
