@@ -16,7 +16,7 @@ holds '  notes the bound' 'j["kind"] == "state-space" and j["states"] == 4 and
     j["estimates"][0]["name"] == "h-infinity-bound" and
     near([j["estimates"][0]["value"]], [121.19], 1e-3) and
     j["stability"] == "stable"'
-expect 1 "'states.h5' reduces to a state space, --estimates is for components" \
+expect 1 "'states.h5' reduces to a state space, --estimates and --recovery are for components" \
     ritz-reduce chain.h5 states.h5 -o x.h5 --estimates none
 expect 0 '4 state, 16 perturbed' ritz-basis balanced --modes 4 \
     --remainder static chain.h5 -o static.h5
