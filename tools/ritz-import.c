@@ -17,8 +17,7 @@ int main(int argc, char **argv)
     ritz_import_request *const it = &given.request;
     const cli_option options[] = {
         CLI_TEXT("stiffness", &it->stiffness, "F",
-                 "matrix K, F being FILE[:NAME[#K]]; a complex one is K + i K4 "
-                 "[none: a rigid body]"),
+                 "K, F being FILE[:NAME[#K]]; complex: K + i K4 [none: rigid]"),
         CLI_TEXT("mass", &it->mass, "F", "matrix M"),
         CLI_TEXT("damping", &it->damping, "F", "viscous damping D"),
         CLI_TEXT("structural-damping", &it->structural_damping, "F",
@@ -28,8 +27,7 @@ int main(int argc, char **argv)
         CLI_TEXT("superelement", &given.superelement, "F.op4",
                  "all of these of NASTRAN's EXTSEOUT, rows by F.pch or F.asm"),
         CLI_TEXT("bulk", &it->bulk, "F",
-                 "deck of NASTRAN, Abaqus, ANSYS or CalculiX: grids, frames, "
-                 "sets"),
+                 "deck of NASTRAN, Abaqus, ANSYS, CalculiX: grids, frames"),
         CLI_TEXT("dofs", &it->dofs, "F",
                  "names of rows: GRID COMP or GRID.COMP a line, 0: a point"),
         CLI_TEXT("rows", &it->rows, "COMPS",
@@ -61,11 +59,9 @@ int main(int argc, char **argv)
         CLI_TEXT("output-names", &it->output_names, "NAME[@LIMIT][,NAME]",
                  "of outputs of matrices or a state space [y1,y2,...]"),
         CLI_LIST("recovery", &given.recovery, "NAME=F[,KIND]",
-                 "rows S of y = S u to recover: KIND stress, force, "
-                 "displacement, acceleration or other"),
+                 "rows S of y = S u: stress, force, displacement, ..."),
         CLI_LIST("recovery-rows", &given.recovery_rows, "NAME=FILE",
-                 "what these rows are, a line each: element or grid, and a "
-                 "word"),
+                 "what they are, a line each: element or grid, and a word"),
         CLI_LIST("damper", &given.damper, "NAME=GRID:COMP[,GRID:COMP]*C[*K]",
                  "damper C, and spring K, between two dofs or to ground"),
         CLI_TEXT(

