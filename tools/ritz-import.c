@@ -11,6 +11,21 @@ static const cli_program program = {
     .output = "the component or state space",
 };
 
+/* Inputs and outputs that are given as matrices. */
+#define MATRIX_OPTIONS(it)                                                     \
+    CLI_TEXT("input-matrix", &it->input_matrix, "F",                           \
+             "B of the forces B f on the rows, n x inputs"),                   \
+        CLI_TEXT("output-matrix", &it->output_matrix, "F",                     \
+                 "C of y = C u + Cv u' + Ca u'', outputs x n"),                \
+        CLI_TEXT("velocity-matrix", &it->velocity_matrix, "F",                 \
+                 "Cv, likewise"),                                              \
+        CLI_TEXT("acceleration-matrix", &it->acceleration_matrix, "F",         \
+                 "Ca, likewise"),                                              \
+        CLI_TEXT("input-names", &it->input_names, "NAME[,NAME]",               \
+                 "of inputs of a matrix or state space [u1,u2,...]"),          \
+        CLI_TEXT("output-names", &it->output_names, "NAME[@LIMIT][,NAME]",     \
+                 "of outputs of matrices or a state space [y1,y2,...]")
+
 int main(int argc, char **argv)
 {
     import_options given = {0};
@@ -47,17 +62,7 @@ int main(int argc, char **argv)
         CLI_LIST("output-at", &given.output,
                  "NAME=GRID:COMP[*SCALE][,...][/vel|/acc][@LIMIT]",
                  "displacement, velocity or acceleration of grids"),
-        CLI_TEXT("input-matrix", &it->input_matrix, "F",
-                 "B of the forces B f on the rows, n x inputs"),
-        CLI_TEXT("output-matrix", &it->output_matrix, "F",
-                 "C of y = C u + Cv u' + Ca u'', outputs x n"),
-        CLI_TEXT("velocity-matrix", &it->velocity_matrix, "F", "Cv, likewise"),
-        CLI_TEXT("acceleration-matrix", &it->acceleration_matrix, "F",
-                 "Ca, likewise"),
-        CLI_TEXT("input-names", &it->input_names, "NAME[,NAME]",
-                 "of inputs of a matrix or state space [u1,u2,...]"),
-        CLI_TEXT("output-names", &it->output_names, "NAME[@LIMIT][,NAME]",
-                 "of outputs of matrices or a state space [y1,y2,...]"),
+        MATRIX_OPTIONS(it),
         CLI_LIST("recovery", &given.recovery, "NAME=F[,KIND]",
                  "rows S of y = S u: stress, force, displacement, ..."),
         CLI_LIST("recovery-rows", &given.recovery_rows, "NAME=FILE",
