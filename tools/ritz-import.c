@@ -13,17 +13,17 @@ static const cli_program program = {
 
 /* Inputs and outputs that are given as matrices. */
 #define MATRIX_OPTIONS(it)                                                     \
-    CLI_TEXT("input-matrix", &it->input_matrix, "F",                           \
+    CLI_TEXT("input-matrix", &(it)->input_matrix, "F",                         \
              "B of the forces B f on the rows, n x inputs"),                   \
-        CLI_TEXT("output-matrix", &it->output_matrix, "F",                     \
+        CLI_TEXT("output-matrix", &(it)->output_matrix, "F",                   \
                  "C of y = C u + Cv u' + Ca u'', outputs x n"),                \
-        CLI_TEXT("velocity-matrix", &it->velocity_matrix, "F",                 \
+        CLI_TEXT("velocity-matrix", &(it)->velocity_matrix, "F",               \
                  "Cv, likewise"),                                              \
-        CLI_TEXT("acceleration-matrix", &it->acceleration_matrix, "F",         \
+        CLI_TEXT("acceleration-matrix", &(it)->acceleration_matrix, "F",       \
                  "Ca, likewise"),                                              \
-        CLI_TEXT("input-names", &it->input_names, "NAME[,NAME]",               \
+        CLI_TEXT("input-names", &(it)->input_names, "NAME[,NAME]",             \
                  "of inputs of a matrix or state space [u1,u2,...]"),          \
-        CLI_TEXT("output-names", &it->output_names, "NAME[@LIMIT][,NAME]",     \
+        CLI_TEXT("output-names", &(it)->output_names, "NAME[@LIMIT][,NAME]",   \
                  "of outputs of matrices or a state space [y1,y2,...]")
 
 int main(int argc, char **argv)
