@@ -14,6 +14,7 @@
 #include "base/alloc.h"
 #include "formats/certificate.h"
 #include "formats/sink.h"
+#include "model/cell_edges.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -27,49 +28,6 @@ enum {
 };
 
 /* ---- edges of elements -------------------------------------------------- */
-
-/* Corners at the ends of the edges of a cell. The node between the ends of edge
-   k, if cells of the kind have one, is the k-th behind the corners
-   [Schroeder2006]. */
-typedef struct cell_edges {
-    ritz_cell kind;
-    int count;
-    signed char end[12][2];
-} cell_edges;
-
-static const cell_edges edges_of[] = {
-    {RITZ_CELL_LINE, 1, {{0, 1}}},
-    {RITZ_CELL_TRIANGLE, 3, {{0, 1}, {1, 2}, {2, 0}}},
-    {RITZ_CELL_QUAD, 4, {{0, 1}, {1, 2}, {2, 3}, {3, 0}}},
-    {RITZ_CELL_TETRA, 6, {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}},
-    {RITZ_CELL_HEXA,
-     12,
-     {{0, 1},
-      {1, 2},
-      {2, 3},
-      {3, 0},
-      {4, 5},
-      {5, 6},
-      {6, 7},
-      {7, 4},
-      {0, 4},
-      {1, 5},
-      {2, 6},
-      {3, 7}}},
-    {RITZ_CELL_WEDGE,
-     9,
-     {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}}},
-};
-
-static const cell_edges *find_edges(ritz_cell linear)
-{
-    static const cell_edges none = {0};
-
-    for (size_t k = 0; k < sizeof edges_of / sizeof *edges_of; k++)
-        if (edges_of[k].kind == linear)
-            return &edges_of[k];
-    return &none;
-}
 
 /* A straight line between two nodes, from < to. */
 typedef struct trace_edge {
@@ -98,7 +56,7 @@ static void put_cell(const ritz_shapes *s, int64_t k, trace_edge *edge,
                      int64_t *count)
 {
     const ritz_cell_shape *shape = ritz_cell_shape_of(s->cells.kind[k]);
-    const cell_edges *edges = find_edges(shape->linear);
+    const ritz_cell_edges *edges = ritz_cell_edges_of(s->cells.kind[k]);
     const int64_t *point = s->cells.grid + s->cells.first[k];
 
     for (int i = 0; i < edges->count; i++) {
@@ -124,7 +82,7 @@ static ritz_status list_edges(const ritz_shapes *s, trace_edge **out,
     trace_edge *edge = NULL;
 
     for (int64_t k = 0; k < s->cells.count; k++)
-        most += find_edges(ritz_cell_shape_of(s->cells.kind[k])->linear)->count;
+        most += ritz_cell_edges_of(s->cells.kind[k])->count;
     RITZ_CHECK_NEW(*out, 2 * most);
     edge = *out;
     for (int64_t k = 0; k < s->cells.count; k++)

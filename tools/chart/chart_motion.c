@@ -3,6 +3,7 @@
 #include "chart/chart.h"
 
 #include "base/tolerances.h"
+#include "model/cell_edges.h"
 
 #include <math.h>
 
@@ -203,35 +204,6 @@ static void choose_scale(motion_chart *m)
 
 /* ---- lines -------------------------------------------------------------- */
 
-/* Edges between corners of the linear cells, as pairs. */
-static const struct {
-    ritz_cell kind;
-    int count;
-    int pair[12][2];
-} edges[] = {
-    {RITZ_CELL_LINE, 1, {{0, 1}}},
-    {RITZ_CELL_TRIANGLE, 3, {{0, 1}, {1, 2}, {2, 0}}},
-    {RITZ_CELL_QUAD, 4, {{0, 1}, {1, 2}, {2, 3}, {3, 0}}},
-    {RITZ_CELL_TETRA, 6, {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}},
-    {RITZ_CELL_WEDGE,
-     9,
-     {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}}},
-    {RITZ_CELL_HEXA,
-     12,
-     {{0, 1},
-      {1, 2},
-      {2, 3},
-      {3, 0},
-      {4, 5},
-      {5, 6},
-      {6, 7},
-      {7, 4},
-      {0, 4},
-      {1, 5},
-      {2, 6},
-      {3, 7}}},
-};
-
 /* A point seen from above, in front and from one side. */
 static void project(const double *x, const double *u, double scale,
                     double out[2])
@@ -281,20 +253,18 @@ static void put_edges(const motion_chart *m, int64_t panel, bool rest, box *b)
 
     for (int64_t k = 0; k < s->cells.count; k++) {
         const int64_t *grid = s->cells.grid + s->cells.first[k];
-        const ritz_cell kind = ritz_cell_shape_of(s->cells.kind[k])->linear;
+        const ritz_cell_edges *edges = ritz_cell_edges_of(s->cells.kind[k]);
 
-        for (size_t e = 0; e < sizeof edges / sizeof *edges; e++)
-            for (int i = 0; edges[e].kind == kind && i < edges[e].count; i++) {
-                double end[2][2];
+        for (int i = 0; i < edges->count; i++) {
+            double end[2][2];
 
-                for (int j = 0; j < 2; j++) {
-                    const int64_t at = 3 * grid[edges[e].pair[i][j]];
+            for (int j = 0; j < 2; j++) {
+                const int64_t at = 3 * grid[edges->end[i][j]];
 
-                    project(s->position + at, s->u.val + at, scale, end[j]);
-                }
-                put_line(m, panel, rest ? 0 : class_of(m, s, k), end[0], end[1],
-                         b);
+                project(s->position + at, s->u.val + at, scale, end[j]);
             }
+            put_line(m, panel, rest ? 0 : class_of(m, s, k), end[0], end[1], b);
+        }
     }
 }
 
