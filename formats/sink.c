@@ -284,6 +284,20 @@ static ritz_status fill_matrix(const entry *e, const ritz_dense *A,
     return RITZ_OK;
 }
 
+/* Rows that recover a quantity of a reduced component; NULL: there are none of
+   that name. */
+static const ritz_quantity *find_quantity(const ritz_export_object *object,
+                                          const char *name, size_t length)
+{
+    const ritz_reduced *r = object->reduced;
+
+    for (int64_t k = 0; r && k < r->num_quantities; k++)
+        if (strlen(r->quantity[k].name) == length &&
+            strncmp(r->quantity[k].name, name, length) == 0)
+            return &r->quantity[k];
+    return NULL;
+}
+
 static const entry *find_entry(const entry *among, const char *name,
                                size_t length)
 {
@@ -296,23 +310,31 @@ static const entry *find_entry(const entry *among, const char *name,
 
 /* The matrices that `at` lists, with commas between; of usual ones those that
  * the object has. */
-static ritz_status list_matrices(const matrix_kind *kind, const void *object,
-                                 const char *at, bool asked, ritz_matrices *out)
+static ritz_status list_matrices(const matrix_kind *kind,
+                                 const ritz_export_object *of, const char *at,
+                                 bool asked, ritz_matrices *out)
 {
+    const void *object =
+        of->states ? (const void *)of->states : (const void *)of->reduced;
+
     while (*at) {
         size_t length = strcspn(at, ",");
         const entry *e = find_entry(kind->entry, at, length);
+        const ritz_quantity *rows = e ? NULL : find_quantity(of, at, length);
+        const entry quantity = {.name = rows ? rows->name : NULL};
         const ritz_dense *A = NULL;
         const ritz_sparse *sparse = NULL;
 
-        RITZ_REFUSE_IF(!e, RITZ_ERR_ARGUMENT,
-                       "there is no matrix '%.*s', there are %s", (int)length,
-                       at, kind->all);
+        RITZ_REFUSE_IF(!e && !rows, RITZ_ERR_ARGUMENT,
+                       "there is no matrix '%.*s', there are %s, and rows to "
+                       "recover by their names",
+                       (int)length, at, kind->all);
+        e = rows ? &quantity : e;
         for (int64_t k = 0; k < out->count; k++)
             RITZ_REFUSE_IF(strcmp(out->matrix[k].name, e->name) == 0,
                            RITZ_ERR_ARGUMENT, "'%s' is named twice", e->name);
-        A = dense_of(object, e);
-        sparse = sparse_of(object, e);
+        A = rows ? &rows->ST : dense_of(object, e);
+        sparse = rows ? NULL : sparse_of(object, e);
         RITZ_REFUSE_IF(asked && !A->val && !sparse, RITZ_ERR_ARGUMENT,
                        "this %s has no '%s'", kind->noun, e->name);
         if (sparse)
@@ -338,9 +360,8 @@ ritz_status ritz_export_matrices(const ritz_export_object *object,
     if (!names)
         names = usual ? usual : kind->usual;
     RITZ_CHECK_NEW(list.matrix, (int64_t)strlen(names) + 1);
-    RITZ_CHECK(list_matrices(
-        kind, object->states ? (const void *)object->states : object->reduced,
-        names, request->matrices != NULL, &list));
+    RITZ_CHECK(
+        list_matrices(kind, object, names, request->matrices != NULL, &list));
     for (int64_t k = 0; k < list.count; k++)
         RITZ_CHECK(ritz_export_say(report, "%s  %lld x %lld",
                                    list.matrix[k].name,

@@ -70,7 +70,8 @@ int main(int argc, char **argv)
     const cli_option options[] = {
         CLI_TEXT("to", &to, "FORMAT", "file format, one of --list"),
         CLI_TEXT("matrix", &request->matrices, "NAME[,NAME]",
-                 "write these matrices only [all]"),
+                 "write these matrices only, rows to recover by their "
+                 "names [all but these rows]"),
         CLI_FLAG("text", &request->text,
                  "write text instead of binary (output4, superelement)"),
         CLI_FLAG("dense", &request->dense,

@@ -9,7 +9,16 @@
 # until each line is read: so it is still searching when the signal comes. Its
 # status is in $got, its output in the file said. If it ends before such a line,
 # no signal is sent.
+#
+# The tool opens the record for each line. Where the reader closes it between
+# that and the line, SIGPIPE ends the tool, and it is run again.
 interrupt() {
+    got=141
+    while [ "$got" = 141 ]; do
+        interrupt_once "$@"
+    done
+}
+interrupt_once() {
     signal=$1 word=$2
     shift 2
     rm -f record ended tool

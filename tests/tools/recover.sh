@@ -31,6 +31,21 @@ holds '  six are, and stresses do not follow them' \
     'j["mode_accelerations"] == 1 and j["free_motions"] == 6
      and j["rigid_rows"] < 1e-5'
 
+# --- rows as a matrix of the reduced coordinates -----------------------------------
+
+expect 0 'stress  475 x' ritz-export --force --to matlab \
+    --matrix K,stress small.h5 -o small.mat
+works '  are those of the container' $python -c 'import h5py, scipy.io
+rows = scipy.io.loadmat("small.mat")["stress"]
+with h5py.File("small.h5") as file:
+    names = []
+    file.visit(names.append)
+    same = [n for n in names if getattr(file[n], "shape", 0) == rows.shape
+            and (file[n][:] == rows).all()]
+assert same, names'
+expect 1 "there is no matrix 'strain'" ritz-export --force --to matlab \
+    --matrix strain small.h5 -o none.mat
+
 # --- the full model's own response ------------------------------------------------
 
 # Smooth loads, so that the response is within the band of the basis.
