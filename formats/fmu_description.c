@@ -45,10 +45,12 @@ static void put_head(const fmu_page *p)
         ritz_version(), two ? " numberOfEventIndicators=\"0\"" : "");
 }
 
-/* What the program can do, in the words of either version. */
+/* What the program can do, in the words of either version. An importer of FMI
+ * 2 is told that its functions for memory are not called. */
 static void put_interfaces(const fmu_page *p)
 {
-    static const char two[] = " canGetAndSetFMUstate=\"true\""
+    static const char two[] = " canNotUseMemoryManagementFunctions=\"true\""
+                              " canGetAndSetFMUstate=\"true\""
                               " canSerializeFMUstate=\"true\""
                               " providesDirectionalDerivative=\"true\"/>\n";
     static const char three[] = " canGetAndSetFMUState=\"true\""

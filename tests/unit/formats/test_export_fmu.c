@@ -261,6 +261,11 @@ static void the_archive_holds_what_the_standard_wants(void **state)
             assert_string_equal(a.file[k].path, paths[fmi - 2][k]);
             assert_int_equal(a.file[k].mode, k == 4 ? 0755 : 0644);
         }
+        /* the program calls malloc, not what an importer of FMI 2 gives it */
+        assert_int_equal(
+            count_words(a.file[0].bytes,
+                        "canNotUseMemoryManagementFunctions=\"true\""),
+            fmi == 2 ? 2 : 0);
         assert_says(a.file[1].bytes, "errors: neither measured nor estimated");
         assert_says(a.file[1].bytes, "units: kg mm s");
         assert_says(a.file[2].bytes, "BSD Zero Clause License");
