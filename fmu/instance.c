@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* Log a sentence of an instance that may not be there. */
 static void log_text(const fmu_callback *to, const char *name, const char *text)
@@ -49,13 +50,13 @@ static int hex_digit(char c)
     return digit < 16 ? digit : digit - 6;
 }
 
-/* Where the path in a URI "file:///..." or "file:/..." begins; text that is no
- * such URI is a path. */
+/* Where the path in a URI "file:///..." or "file:/..." begins [BernersLee2005];
+ * text that is no such URI is a path. */
 static const char *skip_scheme(const char *uri)
 {
     static const char scheme[] = "file:";
 
-    if (strncmp(uri, scheme, sizeof scheme - 1) != 0)
+    if (strncasecmp(uri, scheme, sizeof scheme - 1) != 0)
         return uri;
     uri += sizeof scheme - 1;
     if (strncmp(uri, "//", 2) == 0) {
@@ -66,7 +67,8 @@ static const char *skip_scheme(const char *uri)
     return uri;
 }
 
-/* FOLDER/ritz.bin; NULL: no memory. */
+/* FOLDER/ritz.bin; NULL: no memory. The code %00 stays as it is, as it would end
+ * the path and have another file read. */
 static char *path_of_model(const char *resources, bool is_uri)
 {
     static const char file[] = "/ritz.bin";
@@ -80,12 +82,10 @@ static char *path_of_model(const char *resources, bool is_uri)
     while (*from) {
         const int high = coded && *from == '%' ? hex_digit(from[1]) : -1;
         const int low = high >= 0 ? hex_digit(from[2]) : -1;
+        const bool letter = low >= 0 && high + low > 0;
 
-        *to = *from;
-        if (low >= 0)
-            *to = (char)(16 * high + low);
-        to++;
-        from += low >= 0 ? 3 : 1;
+        *to++ = letter ? (char)(16 * high + low) : *from;
+        from += letter ? 3 : 1;
     }
     memcpy(to, file, sizeof file);
     return path;

@@ -54,13 +54,15 @@ static uint64_t word_at(const unsigned char *at)
     return word;
 }
 
-/* The whole file; NULL: it cannot be read. */
+/* The whole file; NULL: it cannot be read, as a folder, which opens and has a
+ * length of 2^63 - 1. */
 static unsigned char *read_bytes(FILE *file, size_t *size)
 {
     unsigned char *bytes = NULL;
     long end = 0;
 
-    if (fseek(file, 0, SEEK_END) != 0)
+    (void)getc(file);
+    if (ferror(file) || fseek(file, 0, SEEK_END) != 0)
         return NULL;
     end = ftell(file);
     if (end < 0 || fseek(file, 0, SEEK_SET) != 0)

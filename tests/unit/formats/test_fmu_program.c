@@ -9,6 +9,8 @@
 #include <float.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 enum { ROOM = 4096 };
 
@@ -527,6 +529,9 @@ static void resources_of_another_token_are_refused(void **state)
     assert_refused(folder_path("."), "another", "it belongs to the token");
     assert_int_equal(remove(folder_path("ritz.bin")), 0);
     assert_refused(folder_path("."), fmu_sample_token, "cannot be opened");
+    assert_int_equal(mkdir(folder_path("ritz.bin"), 0700), 0);
+    assert_refused(folder_path("."), fmu_sample_token, "it cannot be read");
+    assert_int_equal(rmdir(folder_path("ritz.bin")), 0);
 }
 
 /* Bytes of an oscillator and a dense block, two inputs, one output. */
@@ -612,12 +617,13 @@ static void resources_that_lie_are_refused(void **state)
                    "bytes of numbers instead of");
 }
 
-/* A URI has some letters as their codes. */
+/* A URI has some letters as their codes, but no code ends the path; its scheme
+ * may be in capitals [BernersLee2005]. */
 static void a_uri_is_decoded(void **state)
 {
     fmi2InstantiateTYPE *instantiate = NULL;
     fmi2FreeInstanceTYPE *end = NULL;
-    char path[2048] = "", uri[4096] = "file://localhost";
+    char path[2048] = "", uri[4096] = "File://localhost";
     size_t length = strlen(uri);
     void *instance = NULL;
 
@@ -633,6 +639,9 @@ static void a_uri_is_decoded(void **state)
         instantiate("one", fmi2CoSimulation, fmu_sample_token, uri, NULL, 0, 0);
     assert_non_null(instance);
     end(instance);
+    snprintf(uri + length, sizeof uri - length, "/ritz.bin%%00");
+    assert_null(instantiate("one", fmi2CoSimulation, fmu_sample_token, uri,
+                            NULL, 0, 0));
     assert_null(instantiate("one", fmi2CoSimulation, fmu_sample_token, NULL,
                             NULL, 0, 0));
 }
