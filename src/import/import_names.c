@@ -238,6 +238,13 @@ static ritz_status choose_list(const ritz_deck *deck, int64_t n,
         if (*chosen < 0)
             *chosen = k;
     }
+    /* where EXTRN is cut off, a list that fits by chance has another order */
+    RITZ_REFUSE_IF(*chosen >= 0 && *chosen != EXTERNAL &&
+                       list[EXTERNAL].count > 0,
+                   RITZ_ERR_FORMAT,
+                   "'%s' has %" PRId64 " rows, but EXTRN names %" PRId64
+                   ": --dofs must name the rows",
+                   spec, n, list[EXTERNAL].count);
     if (*chosen >= 0)
         return RITZ_OK;
     explain_sizes(deck, list, sizeof sizes, sizes);

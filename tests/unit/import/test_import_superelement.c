@@ -63,6 +63,10 @@ static void rows_that_do_not_fit_are_refused(void **state)
     assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_FORMAT,
                  "k.mtx' has 3 rows; the deck explains 12 (2 grids) or 4 "
                  "(EXTRN)");
+    /* as where the card is cut off: the points would fit in another order */
+    request = request_of("EXTRN,9,0\nSPOINT,2,9,1001\n");
+    assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_FORMAT,
+                 "has 3 rows, but EXTRN names 1: --dofs must name the rows");
     request = request_of("EXTRN,9,3,2,1\nEXTRN,9,3\nGRID,2\nGRID,9\n");
     assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_FORMAT,
                  "EXTRN names 'grid 9 T3' twice");
