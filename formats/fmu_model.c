@@ -9,6 +9,7 @@
 #include "simulate/motion.h"
 
 #include <complex.h>
+#include <float.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -243,7 +244,7 @@ static ritz_status note_response(const ritz_fmu *fmu, int64_t block,
 }
 
 /* Nominal values are at least a part of the largest, and powers of two, so that
- * rounding does not change them. */
+ * rounding does not change them; none is 0, which the standard forbids. */
 static void settle_nominals(int64_t count, double *nominal)
 {
     double largest = 0.0;
@@ -258,7 +259,7 @@ static void settle_nominals(int64_t count, double *nominal)
         int power = 0;
 
         (void)frexp(fmax(value, RITZ_HALF_DIGITS * largest), &power);
-        nominal[i] = ldexp(RITZ_NOMINAL_SHARE, power - 1);
+        nominal[i] = fmax(ldexp(RITZ_NOMINAL_SHARE, power - 1), DBL_MIN);
     }
 }
 

@@ -235,6 +235,30 @@ static void a_state_space_moves_as_ritz_simulate_does(void **state)
     }
 }
 
+/* Responses near the smallest double, a part of which is no double. */
+static void nominal_values_stay_above_zero(void **state)
+{
+    RITZ_OWN(ritz_reduced) reduced = {0};
+    RITZ_OWN(ritz_state_space) states = {0};
+    RITZ_OWN(ritz_export_report) report = {0};
+    RITZ_OWN(fmu_archive) a = {0};
+    const ritz_export_object object = {.states = &states};
+    const ritz_export_request request = {.output = folder_path("tiny.fmu"),
+                                         .runtime = fmu_runtime()};
+    fmu_driver d;
+
+    (void)state;
+    make_masses(NULL, false, &reduced);
+    assert_ok(ritz_states_of_reduced(&reduced, NULL, &states));
+    for (int64_t k = 0; k < states.B.nrow * states.B.ncol; k++)
+        states.B.val[k] *= 1e-320;
+    assert_ok(ritz_exporter_fmu.write(&object, &request, &report));
+    open_archive("tiny.fmu", &a);
+    assert_int_equal(count_words(a.file[0].bytes, "nominal=\"0\""), 0);
+    drive(&a, 3, &d); /* which the program refuses otherwise */
+    fmu_close(&d);
+}
+
 /* ---- text --------------------------------------------------------------- */
 
 static void the_archive_holds_what_the_standard_wants(void **state)
@@ -509,6 +533,7 @@ static void a_failed_write_leaves_no_file(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(held_inputs_move_it_as_ritz_simulate_does),
     cmocka_unit_test(a_state_space_moves_as_ritz_simulate_does),
+    cmocka_unit_test(nominal_values_stay_above_zero),
     cmocka_unit_test(the_archive_holds_what_the_standard_wants),
     cmocka_unit_test(the_same_model_is_the_same_bytes),
     cmocka_unit_test(dependencies_are_the_entries_that_are_not_zero),
