@@ -84,7 +84,7 @@ static char *path_of_model(const char *resources, bool is_uri)
         const int low = high >= 0 ? hex_digit(from[2]) : -1;
         const bool letter = low >= 0 && high + low > 0;
 
-        *to++ = letter ? (char)(16 * high + low) : *from;
+        *to++ = (char)(letter ? 16 * high + low : *from);
         from += letter ? 3 : 1;
     }
     memcpy(to, file, sizeof file);
