@@ -46,6 +46,7 @@ extern "C" {
 /* Include stddef.h, in order that size_t etc. is defined */
 #include <stddef.h>
 
+
 /* Type definitions */
 
 /* tag::Status[] */
@@ -78,29 +79,32 @@ typedef enum {
 /* end::IntervalQualifier[] */
 
 /* tag::CallbackLogMessage[] */
-typedef void (*fmi3LogMessageCallback)(
-    fmi3InstanceEnvironment instanceEnvironment, fmi3Status status,
-    fmi3String category, fmi3String message);
+typedef void  (*fmi3LogMessageCallback) (fmi3InstanceEnvironment instanceEnvironment,
+                                         fmi3Status status,
+                                         fmi3String category,
+                                         fmi3String message);
 /* end::CallbackLogMessage[] */
 
 /* tag::CallbackClockUpdate[] */
-typedef void (*fmi3ClockUpdateCallback)(
-    fmi3InstanceEnvironment instanceEnvironment);
+typedef void (*fmi3ClockUpdateCallback) (
+    fmi3InstanceEnvironment  instanceEnvironment);
 /* end::CallbackClockUpdate[] */
 
 /* tag::CallbackIntermediateUpdate[] */
-typedef void (*fmi3IntermediateUpdateCallback)(
+typedef void (*fmi3IntermediateUpdateCallback) (
     fmi3InstanceEnvironment instanceEnvironment,
-    fmi3Float64 intermediateUpdateTime,
-    fmi3Boolean intermediateVariableSetRequested,
-    fmi3Boolean intermediateVariableGetAllowed,
-    fmi3Boolean intermediateStepFinished, fmi3Boolean canReturnEarly,
-    fmi3Boolean *earlyReturnRequested, fmi3Float64 *earlyReturnTime);
+    fmi3Float64  intermediateUpdateTime,
+    fmi3Boolean  intermediateVariableSetRequested,
+    fmi3Boolean  intermediateVariableGetAllowed,
+    fmi3Boolean  intermediateStepFinished,
+    fmi3Boolean  canReturnEarly,
+    fmi3Boolean* earlyReturnRequested,
+    fmi3Float64* earlyReturnTime);
 /* end::CallbackIntermediateUpdate[] */
 
 /* tag::CallbackPreemptionLock[] */
-typedef void (*fmi3LockPreemptionCallback)(void);
-typedef void (*fmi3UnlockPreemptionCallback)(void);
+typedef void (*fmi3LockPreemptionCallback)   (void);
+typedef void (*fmi3UnlockPreemptionCallback) (void);
 /* end::CallbackPreemptionLock[] */
 
 /* Define fmi3 function pointer types to simplify dynamic loading */
@@ -111,7 +115,7 @@ Types for Common Functions
 
 /* Inquire version numbers and setting logging status */
 /* tag::GetVersion[] */
-typedef const char *fmi3GetVersionTYPE(void);
+typedef const char* fmi3GetVersionTYPE(void);
 /* end::GetVersion[] */
 
 /* tag::SetDebugLogging[] */
@@ -124,28 +128,39 @@ typedef fmi3Status fmi3SetDebugLoggingTYPE(fmi3Instance instance,
 /* Creation and destruction of FMU instances and setting debug status */
 /* tag::Instantiate[] */
 typedef fmi3Instance fmi3InstantiateModelExchangeTYPE(
-    fmi3String instanceName, fmi3String instantiationToken,
-    fmi3String resourcePath, fmi3Boolean visible, fmi3Boolean loggingOn,
-    fmi3InstanceEnvironment instanceEnvironment,
-    fmi3LogMessageCallback logMessage);
+    fmi3String                 instanceName,
+    fmi3String                 instantiationToken,
+    fmi3String                 resourcePath,
+    fmi3Boolean                visible,
+    fmi3Boolean                loggingOn,
+    fmi3InstanceEnvironment    instanceEnvironment,
+    fmi3LogMessageCallback     logMessage);
 
 typedef fmi3Instance fmi3InstantiateCoSimulationTYPE(
-    fmi3String instanceName, fmi3String instantiationToken,
-    fmi3String resourcePath, fmi3Boolean visible, fmi3Boolean loggingOn,
-    fmi3Boolean eventModeUsed, fmi3Boolean earlyReturnAllowed,
-    const fmi3ValueReference requiredIntermediateVariables[],
-    size_t nRequiredIntermediateVariables,
-    fmi3InstanceEnvironment instanceEnvironment,
-    fmi3LogMessageCallback logMessage,
+    fmi3String                     instanceName,
+    fmi3String                     instantiationToken,
+    fmi3String                     resourcePath,
+    fmi3Boolean                    visible,
+    fmi3Boolean                    loggingOn,
+    fmi3Boolean                    eventModeUsed,
+    fmi3Boolean                    earlyReturnAllowed,
+    const fmi3ValueReference       requiredIntermediateVariables[],
+    size_t                         nRequiredIntermediateVariables,
+    fmi3InstanceEnvironment        instanceEnvironment,
+    fmi3LogMessageCallback         logMessage,
     fmi3IntermediateUpdateCallback intermediateUpdate);
 
 typedef fmi3Instance fmi3InstantiateScheduledExecutionTYPE(
-    fmi3String instanceName, fmi3String instantiationToken,
-    fmi3String resourcePath, fmi3Boolean visible, fmi3Boolean loggingOn,
-    fmi3InstanceEnvironment instanceEnvironment,
-    fmi3LogMessageCallback logMessage, fmi3ClockUpdateCallback clockUpdate,
-    fmi3LockPreemptionCallback lockPreemption,
-    fmi3UnlockPreemptionCallback unlockPreemption);
+    fmi3String                     instanceName,
+    fmi3String                     instantiationToken,
+    fmi3String                     resourcePath,
+    fmi3Boolean                    visible,
+    fmi3Boolean                    loggingOn,
+    fmi3InstanceEnvironment        instanceEnvironment,
+    fmi3LogMessageCallback         logMessage,
+    fmi3ClockUpdateCallback        clockUpdate,
+    fmi3LockPreemptionCallback     lockPreemption,
+    fmi3UnlockPreemptionCallback   unlockPreemption);
 /* end::Instantiate[] */
 
 /* tag::FreeInstance[] */
@@ -154,9 +169,12 @@ typedef void fmi3FreeInstanceTYPE(fmi3Instance instance);
 
 /* Enter and exit initialization mode, enter event mode, terminate and reset */
 /* tag::EnterInitializationMode[] */
-typedef fmi3Status fmi3EnterInitializationModeTYPE(
-    fmi3Instance instance, fmi3Boolean toleranceDefined, fmi3Float64 tolerance,
-    fmi3Float64 startTime, fmi3Boolean stopTimeDefined, fmi3Float64 stopTime);
+typedef fmi3Status fmi3EnterInitializationModeTYPE(fmi3Instance instance,
+                                                   fmi3Boolean toleranceDefined,
+                                                   fmi3Float64 tolerance,
+                                                   fmi3Float64 startTime,
+                                                   fmi3Boolean stopTimeDefined,
+                                                   fmi3Float64 stopTime);
 /* end::EnterInitializationMode[] */
 
 /* tag::ExitInitializationMode[] */
@@ -177,215 +195,253 @@ typedef fmi3Status fmi3ResetTYPE(fmi3Instance instance);
 
 /* Getting and setting variable values */
 /* tag::Getters[] */
-typedef fmi3Status fmi3GetFloat32TYPE(
-    fmi3Instance instance, const fmi3ValueReference valueReferences[],
-    size_t nValueReferences, fmi3Float32 values[], size_t nValues);
+typedef fmi3Status fmi3GetFloat32TYPE(fmi3Instance instance,
+                                      const fmi3ValueReference valueReferences[],
+                                      size_t nValueReferences,
+                                      fmi3Float32 values[],
+                                      size_t nValues);
 
-typedef fmi3Status fmi3GetFloat64TYPE(
-    fmi3Instance instance, const fmi3ValueReference valueReferences[],
-    size_t nValueReferences, fmi3Float64 values[], size_t nValues);
+typedef fmi3Status fmi3GetFloat64TYPE(fmi3Instance instance,
+                                      const fmi3ValueReference valueReferences[],
+                                      size_t nValueReferences,
+                                      fmi3Float64 values[],
+                                      size_t nValues);
 
-typedef fmi3Status fmi3GetInt8TYPE(fmi3Instance instance,
-                                   const fmi3ValueReference valueReferences[],
-                                   size_t nValueReferences, fmi3Int8 values[],
-                                   size_t nValues);
+typedef fmi3Status fmi3GetInt8TYPE   (fmi3Instance instance,
+                                      const fmi3ValueReference valueReferences[],
+                                      size_t nValueReferences,
+                                      fmi3Int8 values[],
+                                      size_t nValues);
 
-typedef fmi3Status fmi3GetUInt8TYPE(fmi3Instance instance,
-                                    const fmi3ValueReference valueReferences[],
-                                    size_t nValueReferences, fmi3UInt8 values[],
-                                    size_t nValues);
+typedef fmi3Status fmi3GetUInt8TYPE  (fmi3Instance instance,
+                                      const fmi3ValueReference valueReferences[],
+                                      size_t nValueReferences,
+                                      fmi3UInt8 values[],
+                                      size_t nValues);
 
-typedef fmi3Status fmi3GetInt16TYPE(fmi3Instance instance,
-                                    const fmi3ValueReference valueReferences[],
-                                    size_t nValueReferences, fmi3Int16 values[],
-                                    size_t nValues);
+typedef fmi3Status fmi3GetInt16TYPE  (fmi3Instance instance,
+                                      const fmi3ValueReference valueReferences[],
+                                      size_t nValueReferences,
+                                      fmi3Int16 values[],
+                                      size_t nValues);
 
-typedef fmi3Status fmi3GetUInt16TYPE(fmi3Instance instance,
-                                     const fmi3ValueReference valueReferences[],
-                                     size_t nValueReferences,
-                                     fmi3UInt16 values[], size_t nValues);
+typedef fmi3Status fmi3GetUInt16TYPE (fmi3Instance instance,
+                                      const fmi3ValueReference valueReferences[],
+                                      size_t nValueReferences,
+                                      fmi3UInt16 values[],
+                                      size_t nValues);
 
-typedef fmi3Status fmi3GetInt32TYPE(fmi3Instance instance,
-                                    const fmi3ValueReference valueReferences[],
-                                    size_t nValueReferences, fmi3Int32 values[],
-                                    size_t nValues);
+typedef fmi3Status fmi3GetInt32TYPE  (fmi3Instance instance,
+                                      const fmi3ValueReference valueReferences[],
+                                      size_t nValueReferences,
+                                      fmi3Int32 values[],
+                                      size_t nValues);
 
-typedef fmi3Status fmi3GetUInt32TYPE(fmi3Instance instance,
-                                     const fmi3ValueReference valueReferences[],
-                                     size_t nValueReferences,
-                                     fmi3UInt32 values[], size_t nValues);
+typedef fmi3Status fmi3GetUInt32TYPE (fmi3Instance instance,
+                                      const fmi3ValueReference valueReferences[],
+                                      size_t nValueReferences,
+                                      fmi3UInt32 values[],
+                                      size_t nValues);
 
-typedef fmi3Status fmi3GetInt64TYPE(fmi3Instance instance,
-                                    const fmi3ValueReference valueReferences[],
-                                    size_t nValueReferences, fmi3Int64 values[],
-                                    size_t nValues);
+typedef fmi3Status fmi3GetInt64TYPE  (fmi3Instance instance,
+                                      const fmi3ValueReference valueReferences[],
+                                      size_t nValueReferences,
+                                      fmi3Int64 values[],
+                                      size_t nValues);
 
-typedef fmi3Status fmi3GetUInt64TYPE(fmi3Instance instance,
-                                     const fmi3ValueReference valueReferences[],
-                                     size_t nValueReferences,
-                                     fmi3UInt64 values[], size_t nValues);
+typedef fmi3Status fmi3GetUInt64TYPE (fmi3Instance instance,
+                                      const fmi3ValueReference valueReferences[],
+                                      size_t nValueReferences,
+                                      fmi3UInt64 values[],
+                                      size_t nValues);
 
-typedef fmi3Status fmi3GetBooleanTYPE(
-    fmi3Instance instance, const fmi3ValueReference valueReferences[],
-    size_t nValueReferences, fmi3Boolean values[], size_t nValues);
+typedef fmi3Status fmi3GetBooleanTYPE(fmi3Instance instance,
+                                      const fmi3ValueReference valueReferences[],
+                                      size_t nValueReferences,
+                                      fmi3Boolean values[],
+                                      size_t nValues);
 
-typedef fmi3Status fmi3GetStringTYPE(fmi3Instance instance,
-                                     const fmi3ValueReference valueReferences[],
-                                     size_t nValueReferences,
-                                     fmi3String values[], size_t nValues);
+typedef fmi3Status fmi3GetStringTYPE (fmi3Instance instance,
+                                      const fmi3ValueReference valueReferences[],
+                                      size_t nValueReferences,
+                                      fmi3String values[],
+                                      size_t nValues);
 
-typedef fmi3Status fmi3GetBinaryTYPE(fmi3Instance instance,
-                                     const fmi3ValueReference valueReferences[],
-                                     size_t nValueReferences,
-                                     size_t valueSizes[], fmi3Binary values[],
-                                     size_t nValues);
+typedef fmi3Status fmi3GetBinaryTYPE (fmi3Instance instance,
+                                      const fmi3ValueReference valueReferences[],
+                                      size_t nValueReferences,
+                                      size_t valueSizes[],
+                                      fmi3Binary values[],
+                                      size_t nValues);
 /* end::Getters[] */
 
 /* tag::GetClock[] */
-typedef fmi3Status fmi3GetClockTYPE(fmi3Instance instance,
-                                    const fmi3ValueReference valueReferences[],
-                                    size_t nValueReferences,
-                                    fmi3Clock values[]);
+typedef fmi3Status fmi3GetClockTYPE  (fmi3Instance instance,
+                                      const fmi3ValueReference valueReferences[],
+                                      size_t nValueReferences,
+                                      fmi3Clock values[]);
 /* end::GetClock[] */
 
 /* tag::Setters[] */
-typedef fmi3Status fmi3SetFloat32TYPE(
-    fmi3Instance instance, const fmi3ValueReference valueReferences[],
-    size_t nValueReferences, const fmi3Float32 values[], size_t nValues);
+typedef fmi3Status fmi3SetFloat32TYPE(fmi3Instance instance,
+                                      const fmi3ValueReference valueReferences[],
+                                      size_t nValueReferences,
+                                      const fmi3Float32 values[],
+                                      size_t nValues);
 
-typedef fmi3Status fmi3SetFloat64TYPE(
-    fmi3Instance instance, const fmi3ValueReference valueReferences[],
-    size_t nValueReferences, const fmi3Float64 values[], size_t nValues);
+typedef fmi3Status fmi3SetFloat64TYPE(fmi3Instance instance,
+                                      const fmi3ValueReference valueReferences[],
+                                      size_t nValueReferences,
+                                      const fmi3Float64 values[],
+                                      size_t nValues);
 
-typedef fmi3Status fmi3SetInt8TYPE(fmi3Instance instance,
-                                   const fmi3ValueReference valueReferences[],
-                                   size_t nValueReferences,
-                                   const fmi3Int8 values[], size_t nValues);
+typedef fmi3Status fmi3SetInt8TYPE   (fmi3Instance instance,
+                                      const fmi3ValueReference valueReferences[],
+                                      size_t nValueReferences,
+                                      const fmi3Int8 values[],
+                                      size_t nValues);
 
-typedef fmi3Status fmi3SetUInt8TYPE(fmi3Instance instance,
-                                    const fmi3ValueReference valueReferences[],
-                                    size_t nValueReferences,
-                                    const fmi3UInt8 values[], size_t nValues);
+typedef fmi3Status fmi3SetUInt8TYPE  (fmi3Instance instance,
+                                      const fmi3ValueReference valueReferences[],
+                                      size_t nValueReferences,
+                                      const fmi3UInt8 values[],
+                                      size_t nValues);
 
-typedef fmi3Status fmi3SetInt16TYPE(fmi3Instance instance,
-                                    const fmi3ValueReference valueReferences[],
-                                    size_t nValueReferences,
-                                    const fmi3Int16 values[], size_t nValues);
+typedef fmi3Status fmi3SetInt16TYPE  (fmi3Instance instance,
+                                      const fmi3ValueReference valueReferences[],
+                                      size_t nValueReferences,
+                                      const fmi3Int16 values[],
+                                      size_t nValues);
 
-typedef fmi3Status fmi3SetUInt16TYPE(fmi3Instance instance,
-                                     const fmi3ValueReference valueReferences[],
-                                     size_t nValueReferences,
-                                     const fmi3UInt16 values[], size_t nValues);
+typedef fmi3Status fmi3SetUInt16TYPE (fmi3Instance instance,
+                                      const fmi3ValueReference valueReferences[],
+                                      size_t nValueReferences,
+                                      const fmi3UInt16 values[],
+                                      size_t nValues);
 
-typedef fmi3Status fmi3SetInt32TYPE(fmi3Instance instance,
-                                    const fmi3ValueReference valueReferences[],
-                                    size_t nValueReferences,
-                                    const fmi3Int32 values[], size_t nValues);
+typedef fmi3Status fmi3SetInt32TYPE  (fmi3Instance instance,
+                                      const fmi3ValueReference valueReferences[],
+                                      size_t nValueReferences,
+                                      const fmi3Int32 values[],
+                                      size_t nValues);
 
-typedef fmi3Status fmi3SetUInt32TYPE(fmi3Instance instance,
-                                     const fmi3ValueReference valueReferences[],
-                                     size_t nValueReferences,
-                                     const fmi3UInt32 values[], size_t nValues);
+typedef fmi3Status fmi3SetUInt32TYPE (fmi3Instance instance,
+                                      const fmi3ValueReference valueReferences[],
+                                      size_t nValueReferences,
+                                      const fmi3UInt32 values[],
+                                      size_t nValues);
 
-typedef fmi3Status fmi3SetInt64TYPE(fmi3Instance instance,
-                                    const fmi3ValueReference valueReferences[],
-                                    size_t nValueReferences,
-                                    const fmi3Int64 values[], size_t nValues);
+typedef fmi3Status fmi3SetInt64TYPE  (fmi3Instance instance,
+                                      const fmi3ValueReference valueReferences[],
+                                      size_t nValueReferences,
+                                      const fmi3Int64 values[],
+                                      size_t nValues);
 
-typedef fmi3Status fmi3SetUInt64TYPE(fmi3Instance instance,
-                                     const fmi3ValueReference valueReferences[],
-                                     size_t nValueReferences,
-                                     const fmi3UInt64 values[], size_t nValues);
+typedef fmi3Status fmi3SetUInt64TYPE (fmi3Instance instance,
+                                      const fmi3ValueReference valueReferences[],
+                                      size_t nValueReferences,
+                                      const fmi3UInt64 values[],
+                                      size_t nValues);
 
-typedef fmi3Status fmi3SetBooleanTYPE(
-    fmi3Instance instance, const fmi3ValueReference valueReferences[],
-    size_t nValueReferences, const fmi3Boolean values[], size_t nValues);
+typedef fmi3Status fmi3SetBooleanTYPE(fmi3Instance instance,
+                                      const fmi3ValueReference valueReferences[],
+                                      size_t nValueReferences,
+                                      const fmi3Boolean values[],
+                                      size_t nValues);
 
-typedef fmi3Status fmi3SetStringTYPE(fmi3Instance instance,
-                                     const fmi3ValueReference valueReferences[],
-                                     size_t nValueReferences,
-                                     const fmi3String values[], size_t nValues);
+typedef fmi3Status fmi3SetStringTYPE (fmi3Instance instance,
+                                      const fmi3ValueReference valueReferences[],
+                                      size_t nValueReferences,
+                                      const fmi3String values[],
+                                      size_t nValues);
 
-typedef fmi3Status fmi3SetBinaryTYPE(fmi3Instance instance,
-                                     const fmi3ValueReference valueReferences[],
-                                     size_t nValueReferences,
-                                     const size_t valueSizes[],
-                                     const fmi3Binary values[], size_t nValues);
+typedef fmi3Status fmi3SetBinaryTYPE (fmi3Instance instance,
+                                      const fmi3ValueReference valueReferences[],
+                                      size_t nValueReferences,
+                                      const size_t valueSizes[],
+                                      const fmi3Binary values[],
+                                      size_t nValues);
 /* end::Setters[] */
 /* tag::SetClock[] */
-typedef fmi3Status fmi3SetClockTYPE(fmi3Instance instance,
-                                    const fmi3ValueReference valueReferences[],
-                                    size_t nValueReferences,
-                                    const fmi3Clock values[]);
+typedef fmi3Status fmi3SetClockTYPE  (fmi3Instance instance,
+                                      const fmi3ValueReference valueReferences[],
+                                      size_t nValueReferences,
+                                      const fmi3Clock values[]);
 /* end::SetClock[] */
 
 /* Getting Variable Dependency Information */
 /* tag::GetNumberOfVariableDependencies[] */
-typedef fmi3Status
-fmi3GetNumberOfVariableDependenciesTYPE(fmi3Instance instance,
-                                        fmi3ValueReference valueReference,
-                                        size_t *nDependencies);
+typedef fmi3Status fmi3GetNumberOfVariableDependenciesTYPE(fmi3Instance instance,
+                                                           fmi3ValueReference valueReference,
+                                                           size_t* nDependencies);
 /* end::GetNumberOfVariableDependencies[] */
 
 /* tag::GetVariableDependencies[] */
-typedef fmi3Status fmi3GetVariableDependenciesTYPE(
-    fmi3Instance instance, fmi3ValueReference dependent,
-    size_t elementIndicesOfDependent[], fmi3ValueReference independents[],
-    size_t elementIndicesOfIndependents[], fmi3DependencyKind dependencyKinds[],
-    size_t nDependencies);
+typedef fmi3Status fmi3GetVariableDependenciesTYPE(fmi3Instance instance,
+                                                   fmi3ValueReference dependent,
+                                                   size_t elementIndicesOfDependent[],
+                                                   fmi3ValueReference independents[],
+                                                   size_t elementIndicesOfIndependents[],
+                                                   fmi3DependencyKind dependencyKinds[],
+                                                   size_t nDependencies);
 /* end::GetVariableDependencies[] */
 
 /* Getting and setting the internal FMU state */
 /* tag::GetFMUState[] */
-typedef fmi3Status fmi3GetFMUStateTYPE(fmi3Instance instance,
-                                       fmi3FMUState *FMUState);
+typedef fmi3Status fmi3GetFMUStateTYPE (fmi3Instance instance, fmi3FMUState* FMUState);
 /* end::GetFMUState[] */
 
 /* tag::SetFMUState[] */
-typedef fmi3Status fmi3SetFMUStateTYPE(fmi3Instance instance,
-                                       fmi3FMUState FMUState);
+typedef fmi3Status fmi3SetFMUStateTYPE (fmi3Instance instance, fmi3FMUState  FMUState);
 /* end::SetFMUState[] */
 
 /* tag::FreeFMUState[] */
-typedef fmi3Status fmi3FreeFMUStateTYPE(fmi3Instance instance,
-                                        fmi3FMUState *FMUState);
+typedef fmi3Status fmi3FreeFMUStateTYPE(fmi3Instance instance, fmi3FMUState* FMUState);
 /* end::FreeFMUState[] */
 
 /* tag::SerializedFMUStateSize[] */
 typedef fmi3Status fmi3SerializedFMUStateSizeTYPE(fmi3Instance instance,
                                                   fmi3FMUState FMUState,
-                                                  size_t *size);
+                                                  size_t* size);
 /* end::SerializedFMUStateSize[] */
 
 /* tag::SerializeFMUState[] */
-typedef fmi3Status fmi3SerializeFMUStateTYPE(fmi3Instance instance,
-                                             fmi3FMUState FMUState,
-                                             fmi3Byte serializedState[],
-                                             size_t size);
+typedef fmi3Status fmi3SerializeFMUStateTYPE     (fmi3Instance instance,
+                                                  fmi3FMUState FMUState,
+                                                  fmi3Byte serializedState[],
+                                                  size_t size);
 /* end::SerializeFMUState[] */
 
 /* tag::DeserializeFMUState[] */
-typedef fmi3Status fmi3DeserializeFMUStateTYPE(fmi3Instance instance,
-                                               const fmi3Byte serializedState[],
-                                               size_t size,
-                                               fmi3FMUState *FMUState);
+typedef fmi3Status fmi3DeserializeFMUStateTYPE   (fmi3Instance instance,
+                                                  const fmi3Byte serializedState[],
+                                                  size_t size,
+                                                  fmi3FMUState* FMUState);
 /* end::DeserializeFMUState[] */
 
 /* Getting partial derivatives */
 /* tag::GetDirectionalDerivative[] */
-typedef fmi3Status fmi3GetDirectionalDerivativeTYPE(
-    fmi3Instance instance, const fmi3ValueReference unknowns[],
-    size_t nUnknowns, const fmi3ValueReference knowns[], size_t nKnowns,
-    const fmi3Float64 seed[], size_t nSeed, fmi3Float64 sensitivity[],
-    size_t nSensitivity);
+typedef fmi3Status fmi3GetDirectionalDerivativeTYPE(fmi3Instance instance,
+                                                    const fmi3ValueReference unknowns[],
+                                                    size_t nUnknowns,
+                                                    const fmi3ValueReference knowns[],
+                                                    size_t nKnowns,
+                                                    const fmi3Float64 seed[],
+                                                    size_t nSeed,
+                                                    fmi3Float64 sensitivity[],
+                                                    size_t nSensitivity);
 /* end::GetDirectionalDerivative[] */
 
 /* tag::GetAdjointDerivative[] */
-typedef fmi3Status fmi3GetAdjointDerivativeTYPE(
-    fmi3Instance instance, const fmi3ValueReference unknowns[],
-    size_t nUnknowns, const fmi3ValueReference knowns[], size_t nKnowns,
-    const fmi3Float64 seed[], size_t nSeed, fmi3Float64 sensitivity[],
-    size_t nSensitivity);
+typedef fmi3Status fmi3GetAdjointDerivativeTYPE(fmi3Instance instance,
+                                                const fmi3ValueReference unknowns[],
+                                                size_t nUnknowns,
+                                                const fmi3ValueReference knowns[],
+                                                size_t nKnowns,
+                                                const fmi3Float64 seed[],
+                                                size_t nSeed,
+                                                fmi3Float64 sensitivity[],
+                                                size_t nSensitivity);
 /* end::GetAdjointDerivative[] */
 
 /* Entering and exiting the Configuration or Reconfiguration Mode */
@@ -399,59 +455,65 @@ typedef fmi3Status fmi3ExitConfigurationModeTYPE(fmi3Instance instance);
 /* end::ExitConfigurationMode[] */
 
 /* tag::GetIntervalDecimal[] */
-typedef fmi3Status
-fmi3GetIntervalDecimalTYPE(fmi3Instance instance,
-                           const fmi3ValueReference valueReferences[],
-                           size_t nValueReferences, fmi3Float64 intervals[],
-                           fmi3IntervalQualifier qualifiers[]);
+typedef fmi3Status fmi3GetIntervalDecimalTYPE(fmi3Instance instance,
+                                              const fmi3ValueReference valueReferences[],
+                                              size_t nValueReferences,
+                                              fmi3Float64 intervals[],
+                                              fmi3IntervalQualifier qualifiers[]);
 /* end::GetIntervalDecimal[] */
 
 /* tag::GetIntervalFraction[] */
-typedef fmi3Status fmi3GetIntervalFractionTYPE(
-    fmi3Instance instance, const fmi3ValueReference valueReferences[],
-    size_t nValueReferences, fmi3UInt64 counters[], fmi3UInt64 resolutions[],
-    fmi3IntervalQualifier qualifiers[]);
+typedef fmi3Status fmi3GetIntervalFractionTYPE(fmi3Instance instance,
+                                               const fmi3ValueReference valueReferences[],
+                                               size_t nValueReferences,
+                                               fmi3UInt64 counters[],
+                                               fmi3UInt64 resolutions[],
+                                               fmi3IntervalQualifier qualifiers[]);
 /* end::GetIntervalFraction[] */
 
 /* tag::GetShiftDecimal[] */
-typedef fmi3Status
-fmi3GetShiftDecimalTYPE(fmi3Instance instance,
-                        const fmi3ValueReference valueReferences[],
-                        size_t nValueReferences, fmi3Float64 shifts[]);
+typedef fmi3Status fmi3GetShiftDecimalTYPE(fmi3Instance instance,
+                                           const fmi3ValueReference valueReferences[],
+                                           size_t nValueReferences,
+                                           fmi3Float64 shifts[]);
 /* end::GetShiftDecimal[] */
 
 /* tag::GetShiftFraction[] */
-typedef fmi3Status fmi3GetShiftFractionTYPE(
-    fmi3Instance instance, const fmi3ValueReference valueReferences[],
-    size_t nValueReferences, fmi3UInt64 counters[], fmi3UInt64 resolutions[]);
+typedef fmi3Status fmi3GetShiftFractionTYPE(fmi3Instance instance,
+                                            const fmi3ValueReference valueReferences[],
+                                            size_t nValueReferences,
+                                            fmi3UInt64 counters[],
+                                            fmi3UInt64 resolutions[]);
 /* end::GetShiftFraction[] */
 
 /* tag::SetIntervalDecimal[] */
-typedef fmi3Status fmi3SetIntervalDecimalTYPE(
-    fmi3Instance instance, const fmi3ValueReference valueReferences[],
-    size_t nValueReferences, const fmi3Float64 intervals[]);
+typedef fmi3Status fmi3SetIntervalDecimalTYPE(fmi3Instance instance,
+                                              const fmi3ValueReference valueReferences[],
+                                              size_t nValueReferences,
+                                              const fmi3Float64 intervals[]);
 /* end::SetIntervalDecimal[] */
 
 /* tag::SetIntervalFraction[] */
-typedef fmi3Status fmi3SetIntervalFractionTYPE(
-    fmi3Instance instance, const fmi3ValueReference valueReferences[],
-    size_t nValueReferences, const fmi3UInt64 counters[],
-    const fmi3UInt64 resolutions[]);
+typedef fmi3Status fmi3SetIntervalFractionTYPE(fmi3Instance instance,
+                                               const fmi3ValueReference valueReferences[],
+                                               size_t nValueReferences,
+                                               const fmi3UInt64 counters[],
+                                               const fmi3UInt64 resolutions[]);
 /* end::SetIntervalFraction[] */
 
 /* tag::SetShiftDecimal[] */
-typedef fmi3Status
-fmi3SetShiftDecimalTYPE(fmi3Instance instance,
-                        const fmi3ValueReference valueReferences[],
-                        size_t nValueReferences, const fmi3Float64 shifts[]);
+typedef fmi3Status fmi3SetShiftDecimalTYPE(fmi3Instance instance,
+                                           const fmi3ValueReference valueReferences[],
+                                           size_t nValueReferences,
+                                           const fmi3Float64 shifts[]);
 /* end::SetShiftDecimal[] */
 
 /* tag::SetShiftFraction[] */
-typedef fmi3Status
-fmi3SetShiftFractionTYPE(fmi3Instance instance,
-                         const fmi3ValueReference valueReferences[],
-                         size_t nValueReferences, const fmi3UInt64 counters[],
-                         const fmi3UInt64 resolutions[]);
+typedef fmi3Status fmi3SetShiftFractionTYPE(fmi3Instance instance,
+                                            const fmi3ValueReference valueReferences[],
+                                            size_t nValueReferences,
+                                            const fmi3UInt64 counters[],
+                                            const fmi3UInt64 resolutions[]);
 /* end::SetShiftFraction[] */
 
 /* tag::EvaluateDiscreteStates[] */
@@ -459,12 +521,13 @@ typedef fmi3Status fmi3EvaluateDiscreteStatesTYPE(fmi3Instance instance);
 /* end::EvaluateDiscreteStates[] */
 
 /* tag::UpdateDiscreteStates[] */
-typedef fmi3Status fmi3UpdateDiscreteStatesTYPE(
-    fmi3Instance instance, fmi3Boolean *discreteStatesNeedUpdate,
-    fmi3Boolean *terminateSimulation,
-    fmi3Boolean *nominalsOfContinuousStatesChanged,
-    fmi3Boolean *valuesOfContinuousStatesChanged,
-    fmi3Boolean *nextEventTimeDefined, fmi3Float64 *nextEventTime);
+typedef fmi3Status fmi3UpdateDiscreteStatesTYPE(fmi3Instance instance,
+                                                fmi3Boolean* discreteStatesNeedUpdate,
+                                                fmi3Boolean* terminateSimulation,
+                                                fmi3Boolean* nominalsOfContinuousStatesChanged,
+                                                fmi3Boolean* valuesOfContinuousStatesChanged,
+                                                fmi3Boolean* nextEventTimeDefined,
+                                                fmi3Float64* nextEventTime);
 /* end::UpdateDiscreteStates[] */
 
 /***************************************************
@@ -476,9 +539,10 @@ typedef fmi3Status fmi3EnterContinuousTimeModeTYPE(fmi3Instance instance);
 /* end::EnterContinuousTimeMode[] */
 
 /* tag::CompletedIntegratorStep[] */
-typedef fmi3Status fmi3CompletedIntegratorStepTYPE(
-    fmi3Instance instance, fmi3Boolean noSetFMUStatePriorToCurrentPoint,
-    fmi3Boolean *enterEventMode, fmi3Boolean *terminateSimulation);
+typedef fmi3Status fmi3CompletedIntegratorStepTYPE(fmi3Instance instance,
+                                                   fmi3Boolean  noSetFMUStatePriorToCurrentPoint,
+                                                   fmi3Boolean* enterEventMode,
+                                                   fmi3Boolean* terminateSimulation);
 /* end::CompletedIntegratorStep[] */
 
 /* Providing independent variables and re-initialization of caching */
@@ -487,16 +551,16 @@ typedef fmi3Status fmi3SetTimeTYPE(fmi3Instance instance, fmi3Float64 time);
 /* end::SetTime[] */
 
 /* tag::SetContinuousStates[] */
-typedef fmi3Status
-fmi3SetContinuousStatesTYPE(fmi3Instance instance,
-                            const fmi3Float64 continuousStates[],
-                            size_t nContinuousStates);
+typedef fmi3Status fmi3SetContinuousStatesTYPE(fmi3Instance instance,
+                                               const fmi3Float64 continuousStates[],
+                                               size_t nContinuousStates);
 /* end::SetContinuousStates[] */
 
 /* Evaluation of the model equations */
 /* tag::GetDerivatives[] */
-typedef fmi3Status fmi3GetContinuousStateDerivativesTYPE(
-    fmi3Instance instance, fmi3Float64 derivatives[], size_t nContinuousStates);
+typedef fmi3Status fmi3GetContinuousStateDerivativesTYPE(fmi3Instance instance,
+                                                         fmi3Float64 derivatives[],
+                                                         size_t nContinuousStates);
 /* end::GetDerivatives[] */
 
 /* tag::GetEventIndicators[] */
@@ -512,19 +576,19 @@ typedef fmi3Status fmi3GetContinuousStatesTYPE(fmi3Instance instance,
 /* end::GetContinuousStates[] */
 
 /* tag::GetNominalsOfContinuousStates[] */
-typedef fmi3Status fmi3GetNominalsOfContinuousStatesTYPE(
-    fmi3Instance instance, fmi3Float64 nominals[], size_t nContinuousStates);
+typedef fmi3Status fmi3GetNominalsOfContinuousStatesTYPE(fmi3Instance instance,
+                                                         fmi3Float64 nominals[],
+                                                         size_t nContinuousStates);
 /* end::GetNominalsOfContinuousStates[] */
 
 /* tag::GetNumberOfEventIndicators[] */
 typedef fmi3Status fmi3GetNumberOfEventIndicatorsTYPE(fmi3Instance instance,
-                                                      size_t *nEventIndicators);
+                                                      size_t* nEventIndicators);
 /* end::GetNumberOfEventIndicators[] */
 
 /* tag::GetNumberOfContinuousStates[] */
-typedef fmi3Status
-fmi3GetNumberOfContinuousStatesTYPE(fmi3Instance instance,
-                                    size_t *nContinuousStates);
+typedef fmi3Status fmi3GetNumberOfContinuousStatesTYPE(fmi3Instance instance,
+                                                       size_t* nContinuousStates);
 /* end::GetNumberOfContinuousStates[] */
 
 /***************************************************
@@ -538,11 +602,12 @@ typedef fmi3Status fmi3EnterStepModeTYPE(fmi3Instance instance);
 /* end::EnterStepMode[] */
 
 /* tag::GetOutputDerivatives[] */
-typedef fmi3Status
-fmi3GetOutputDerivativesTYPE(fmi3Instance instance,
-                             const fmi3ValueReference valueReferences[],
-                             size_t nValueReferences, const fmi3Int32 orders[],
-                             fmi3Float64 values[], size_t nValues);
+typedef fmi3Status fmi3GetOutputDerivativesTYPE(fmi3Instance instance,
+                                                const fmi3ValueReference valueReferences[],
+                                                size_t nValueReferences,
+                                                const fmi3Int32 orders[],
+                                                fmi3Float64 values[],
+                                                size_t nValues);
 /* end::GetOutputDerivatives[] */
 
 /* tag::DoStep[] */
@@ -550,10 +615,10 @@ typedef fmi3Status fmi3DoStepTYPE(fmi3Instance instance,
                                   fmi3Float64 currentCommunicationPoint,
                                   fmi3Float64 communicationStepSize,
                                   fmi3Boolean noSetFMUStatePriorToCurrentPoint,
-                                  fmi3Boolean *eventHandlingNeeded,
-                                  fmi3Boolean *terminateSimulation,
-                                  fmi3Boolean *earlyReturn,
-                                  fmi3Float64 *lastSuccessfulTime);
+                                  fmi3Boolean* eventHandlingNeeded,
+                                  fmi3Boolean* terminateSimulation,
+                                  fmi3Boolean* earlyReturn,
+                                  fmi3Float64* lastSuccessfulTime);
 /* end::DoStep[] */
 
 /***************************************************
@@ -561,14 +626,13 @@ Types for Functions for Scheduled Execution
 ****************************************************/
 
 /* tag::ActivateModelPartition[] */
-typedef fmi3Status
-fmi3ActivateModelPartitionTYPE(fmi3Instance instance,
-                               fmi3ValueReference clockReference,
-                               fmi3Float64 activationTime);
+typedef fmi3Status fmi3ActivateModelPartitionTYPE(fmi3Instance instance,
+                                                  fmi3ValueReference clockReference,
+                                                  fmi3Float64 activationTime);
 /* end::ActivateModelPartition[] */
 
 #ifdef __cplusplus
-} /* end of extern "C" { */
+}  /* end of extern "C" { */
 #endif
 
 #endif /* fmi3FunctionTypes_h */
