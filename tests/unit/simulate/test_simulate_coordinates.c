@@ -108,7 +108,9 @@ static void outputs_are_the_same(void **)
     assert_string_equal(with.output[0], "end");
     assert_string_equal(with.input[0], "push");
     for (int64_t k = 0; k < with.count; k++) {
-        assert_near(with.y[k], without.y[k], DBL_EPSILON * fabs(without.y[k]));
+        /* sums of a term for each mode, of displacements below 1, in an order
+           that depends on how many outputs there are */
+        assert_near(with.y[k], without.y[k], MASSES * DBL_EPSILON);
         assert_near(with.balance[k], without.balance[k], 1e2 * DBL_EPSILON);
     }
 }
