@@ -290,7 +290,7 @@ def import_named():
           said)
 
 
-# CalculiX 2.20 writes beyond its memory if most dofs of a model are kept.
+# CalculiX writes beyond its memory if it keeps more dofs than there are nodes.
 BAR_NODES = {4 * k + c + 1: (2.0 * k, y, z) for k in range(21)
              for c, (y, z) in enumerate([(0.0, 0.0), (1.0, 0.0), (1.0, 1.5),
                                          (0.0, 1.5)])}

@@ -1,7 +1,7 @@
 """NASTRAN-95, MYSTRAN and CalculiX, each run on one deck in a folder.
 
 RITZ_SOLVERS [build/interop/solvers] is where ./bootstrap interop unpacks the
-first two; CalculiX is ccx of the PATH."""
+first two; CalculiX is the program that CCX names [ccx]."""
 import os
 import pathlib
 import re
@@ -14,6 +14,7 @@ FOLDER = pathlib.Path(os.environ.get(
     "RITZ_SOLVERS", DATA.parent / "build/interop/solvers")).resolve()
 NASTRAN95 = FOLDER / "nastran95/_data/bin/nastrn"
 MYSTRAN = FOLDER / "mystran/_data/bin/mystran"
+CALCULIX = os.environ.get("CCX", "ccx")
 
 
 def need(*programs):
@@ -24,7 +25,7 @@ def need(*programs):
 
 
 def need_calculix():
-    need("ccx")
+    need(CALCULIX)
 
 
 def run(command, folder, log, seconds=300, **more):
@@ -69,8 +70,9 @@ def run_calculix(deck, folder):
     """Printed output; deck is a file name without its ending .inp."""
     deck = pathlib.Path(deck)
     stem = deck.stem if deck.suffix == ".inp" else deck.name
+    program = pathlib.Path(shutil.which(CALCULIX)).resolve()
     one = dict(os.environ, OMP_NUM_THREADS="1")
-    return run(["ccx", stem], folder, stem + ".out", env=one)
+    return run([program, stem], folder, stem + ".out", env=one)
 
 
 NUMBER = r"\s+([-+]?\d[-+.\dE]*)"
