@@ -156,20 +156,26 @@ def abaqus_input(part, tools):
     return "m_STIF1.mtx", "m_MASS1.mtx", "--bulk", "m.inp"
 
 
-def substructure(part, tools):
-    """A user element of all free nodes, its lower triangle by rows, four
-    numbers to a line [Abaqus2016]."""
-    nodes = [n for k, n in enumerate(part.node) if k not in part.held]
+def user_element(nodes, K, M):
+    """A substructure with three directions of each node: lower triangles by
+    rows, four numbers to a line [Abaqus2016]."""
     lines = [f"*USER ELEMENT, NODES={len(nodes)}, LINEAR", "** ELEMENT NODES"]
     lines += ["** " + ", ".join(map(str, nodes[k:k + 8]))
               for k in range(0, len(nodes), 8)] + ["1, 2, 3"]
-    for name, A in ("STIFFNESS", part.K), ("MASS", part.M):
+    for name, A in ("STIFFNESS", K), ("MASS", M):
         lines.append("*MATRIX, TYPE=" + name)
-        for i, row in enumerate(part.free(A)):
+        for i, row in enumerate(A):
             words = [f"{value:.15e}" for value in row[:i + 1]]
             lines += [", ".join(words[k:k + 4])
                       for k in range(0, len(words), 4)]
-    write(tools, "u.mtx", lines)
+    return lines
+
+
+def substructure(part, tools):
+    """A user element of all free nodes, which condenses nothing."""
+    nodes = [n for k, n in enumerate(part.node) if k not in part.held]
+    write(tools, "u.mtx", user_element(nodes, part.free(part.K),
+                                       part.free(part.M)))
     write(tools, "u.inp", inp(part, ["*SUBSTRUCTURE GENERATE, TYPE=Z1"]))
     return "u.mtx:STIFFNESS", "u.mtx:MASS", "--bulk", "u.inp"
 
@@ -317,6 +323,59 @@ def compare(tap, title, first, found, rounding):
                       f"{title}: {name}")
 
 
+def reduced(tools, name):
+    """K and M of the component NAME.h5 after Guyan's reduction to its port."""
+    tools("ritz-basis", "guyan", name + ".h5", "-o", "basis.h5")
+    tools("ritz-reduce", name + ".h5", "basis.h5", "-o", "reduced.h5")
+    with h5py.File(tools.path("reduced.h5")) as f:
+        return f["K"][:], f["M"][:]
+
+
+class Condensed:
+    """K and M at the rows of some nodes, T'KT and T'MT with T = [I; -K_ii^-1
+    K_ik], and what rounding may change: e |T|'|K||T| for K, whose first
+    variation with T is zero, and for M that of T too."""
+
+    def __init__(self, part, nodes):
+        K, M = part.free(part.K), part.free(part.M)
+        kept = numpy.isin([part.dof[r][0] for r in part.rows], nodes)
+        T = numpy.eye(len(K))[:, kept]
+        inverse = numpy.linalg.inv(K[numpy.ix_(~kept, ~kept)])
+        T[~kept] = -inverse @ K[numpy.ix_(~kept, kept)]
+        self.K, self.M = T.T @ K @ T, T.T @ M @ T
+        e = len(K) * numpy.finfo(float).eps
+        error = numpy.zeros_like(T)
+        error[~kept] = abs(inverse) @ (abs(K) @ abs(T))[~kept] * e
+        self.K_error = e * (abs(T.T) @ abs(K) @ abs(T)).max()
+        self.M_error = (abs(T.T) @ abs(M) @ (e * abs(T) + 2 * error)).max()
+
+
+def check_condensed(tap):
+    """The substructure that Abaqus would write of two nodes of the free end,
+    STIFFNESS and MASS condensed, is guyan."""
+    part = Part(17)
+    nodes = part.node[part.index[-1].ravel()[[0, -1]]]
+    exact = Condensed(part, nodes)
+    with tempfile.TemporaryDirectory() as folder:
+        tools = Tools(sys.argv[1], folder)
+        K, M, *options = substructure(part, tools)
+        tools("ritz-import", "--stiffness", K, "--mass", M, *options,
+              "--port", "kept=" + ",".join(map(str, nodes)), "-o", "whole.h5")
+        write(tools, "k.mtx", user_element(nodes, exact.K, exact.M))
+        tools("ritz-import", "--stiffness", "k.mtx:STIFFNESS", "--mass",
+              "k.mtx:MASS", *options, "-o", "kept.h5")
+        with h5py.File(tools.path("kept.h5")) as f:
+            found = {name: sparse(f[name]) for name in "KM"}
+            rows = list(zip(f["dofs/grid"][:], f["dofs/component"][:]))
+        K, M = reduced(tools, "whole")
+    tap.check(rows == [(n, d) for n in nodes for d in (1, 2, 3)],
+              "a condensed substructure has rows of kept nodes")
+    for name, A, error in ("K", K, exact.K_error), ("M", M, exact.M_error):
+        # and half a unit of the sixteenth digit of 1.0
+        tap.near(found[name], A, error / abs(A).max() + 5.1e-16,
+                 f"a condensed substructure is guyan: {name}")
+
+
 def main():
     tap = Tap()
     for digits in 10, 17:
@@ -337,6 +396,7 @@ def main():
             else:
                 compare(tap, f"{digits} digits, {spelling.__name__}", first,
                         found, rounding if digits > 10 else 0.0)
+    check_condensed(tap)
     tap.finish()
 
 
