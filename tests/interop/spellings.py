@@ -6,12 +6,13 @@ places of grids and elements.
 The files are written here from the published layouts that docs/import.md names,
 by nothing that Ritz has. Values have ten digits, which every spelling carries, so
 that components are equal in every bit; then seventeen, of which each format keeps
-its own number."""
+its own number. Substructures are guyan if they are condensed, as Abaqus would do
+it and as CalculiX 2.23 has done it (data/substructure)."""
 import struct
 import sys
 import tempfile
 
-from common import Block, Tap, Tools, skip
+from common import DATA, Block, Tap, Tools, skip
 
 try:
     import h5py
@@ -19,6 +20,9 @@ try:
     import scipy.sparse
 except ImportError as missing:
     skip(missing)
+
+
+EPSILON = numpy.finfo(float).eps
 
 
 class Part:
@@ -332,18 +336,15 @@ def reduced(tools, name):
 
 
 class Condensed:
-    """K and M at the rows of some nodes, T'KT and T'MT with T = [I; -K_ii^-1
-    K_ik], and what rounding may change: e |T|'|K||T| for K, whose first
-    variation with T is zero, and for M that of T too."""
+    """T'KT and T'MT with T = [I; -K_ii^-1 K_ik] for the kept rows, and what
+    rounding by e may change: e |T|'|K||T| for K, whose first variation with T
+    is zero, and for M that of T too."""
 
-    def __init__(self, part, nodes):
-        K, M = part.free(part.K), part.free(part.M)
-        kept = numpy.isin([part.dof[r][0] for r in part.rows], nodes)
+    def __init__(self, K, M, kept, e):
         T = numpy.eye(len(K))[:, kept]
         inverse = numpy.linalg.inv(K[numpy.ix_(~kept, ~kept)])
         T[~kept] = -inverse @ K[numpy.ix_(~kept, kept)]
         self.K, self.M = T.T @ K @ T, T.T @ M @ T
-        e = len(K) * numpy.finfo(float).eps
         error = numpy.zeros_like(T)
         error[~kept] = abs(inverse) @ (abs(K) @ abs(T))[~kept] * e
         self.K_error = e * (abs(T.T) @ abs(K) @ abs(T)).max()
@@ -355,7 +356,9 @@ def check_condensed(tap):
     STIFFNESS and MASS condensed, is guyan."""
     part = Part(17)
     nodes = part.node[part.index[-1].ravel()[[0, -1]]]
-    exact = Condensed(part, nodes)
+    K, M = part.free(part.K), part.free(part.M)
+    exact = Condensed(K, M, numpy.isin([part.dof[r][0] for r in part.rows],
+                                       nodes), len(K) * EPSILON)
     with tempfile.TemporaryDirectory() as folder:
         tools = Tools(sys.argv[1], folder)
         K, M, *options = substructure(part, tools)
@@ -374,6 +377,30 @@ def check_condensed(tap):
         # and half a unit of the sixteenth digit of 1.0
         tap.near(found[name], A, error / abs(A).max() + 5.1e-16,
                  f"a condensed substructure is guyan: {name}")
+
+
+def check_calculix(tap):
+    """The substructure of data/substructure, which CalculiX 2.23 condensed, is
+    guyan of the matrices that it stored, with 14 digits."""
+    folder = DATA / "substructure"
+    with tempfile.TemporaryDirectory() as scratch:
+        tools = Tools(sys.argv[1], scratch)
+        tools("ritz-import", "--stiffness", folder / "store.sti", "--mass",
+              folder / "store.mas", "--dofs", folder / "store.dof", "--bulk",
+              folder / "store.inp", "--port", "kept=13,16", "-o", "whole.h5")
+        with h5py.File(tools.path("whole.h5")) as f:
+            whole = Condensed(sparse(f["K"]), sparse(f["M"]),
+                              numpy.isin(f["dofs/grid"][:], [13, 16]), 5e-14)
+        write(tools, "unit.mtx", [f"{n},{d},{n},{d},1." for n in (13, 16)
+                                  for d in (1, 2, 3)])
+        tools("ritz-import", "--stiffness", folder / "part.mtx", "--mass",
+              "unit.mtx", "--bulk", folder / "part.inp", "-o", "kept.h5")
+        with h5py.File(tools.path("kept.h5")) as f:
+            found = sparse(f["K"])
+        K, _ = reduced(tools, "whole")
+    # and half a unit of the thirteenth digit of 0.1
+    tap.near(found, K, whole.K_error / abs(K).max() + 5.1e-13,
+             "a substructure of CalculiX 2.23 is guyan")
 
 
 def main():
@@ -397,6 +424,7 @@ def main():
                 compare(tap, f"{digits} digits, {spelling.__name__}", first,
                         found, rounding if digits > 10 else 0.0)
     check_condensed(tap)
+    check_calculix(tap)
     tap.finish()
 
 
