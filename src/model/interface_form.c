@@ -206,12 +206,25 @@ static double invert_or_one(double value)
 }
 
 /*
- * T_b^+ and N from the singular value decomposition of diag(a) T_b diag(c),
- * whose rows and columns are scaled to have the largest entry 1: rows are
- * lengths and angles, columns have units of their own.
+ * c_j of column j, so that c_j^2 M_jj = 1. The largest entry in T_b of a column
+ * would not do: if the column leaves the interface at rest, it is rounding, as
+ * of the Krylov vectors of krylov-cms-free. A column without mass has no other
+ * scale.
  */
-static ritz_status divide_space(const ritz_dense *T_b, ritz_dense *inverse,
-                                ritz_dense *N)
+static double scale_of(const ritz_dense *M, const ritz_dense *T_b, int64_t j)
+{
+    const double m = ritz_dense_col(M, j)[j];
+
+    return m > 0.0 ? 1.0 / sqrt(m) : invert_or_one(ritz_dense_col_max(T_b, j));
+}
+
+/*
+ * T_b^+ and N from the singular value decomposition of diag(a) T_b diag(c).
+ * Columns, which have units of their own, are scaled to a mass of 1, and rows,
+ * which are lengths and angles, to have the largest entry 1.
+ */
+static ritz_status divide_space(const ritz_dense *M, const ritz_dense *T_b,
+                                ritz_dense *inverse, ritz_dense *N)
 {
     const int64_t p = T_b->nrow, r = T_b->ncol;
     RITZ_OWN_ARRAY double *a = NULL, *c = NULL, *s = NULL;
@@ -221,7 +234,7 @@ static ritz_status divide_space(const ritz_dense *T_b, ritz_dense *inverse,
     RITZ_CHECK_NEW(c, r);
     RITZ_CHECK(ritz_dense_copy(T_b, &A));
     for (int64_t j = 0; j < r; j++) {
-        c[j] = invert_or_one(ritz_dense_col_max(&A, j));
+        c[j] = scale_of(M, T_b, j);
         for (int64_t i = 0; i < p; i++) {
             ritz_dense_col(&A, j)[i] *= c[j];
             a[i] = fmax(a[i], fabs(ritz_dense_col(&A, j)[i]));
@@ -408,7 +421,7 @@ static ritz_status make_columns(const ritz_reduced *reduced,
     RITZ_OWN(ritz_pairs) pairs = {0};
     ritz_dense N_0 = {0}; /* borrowed */
 
-    RITZ_CHECK(divide_space(T_b, &X, &N));
+    RITZ_CHECK(divide_space(&model->M, T_b, &X, &N));
     RITZ_CHECK_NEW(form->hertz, N.ncol);
     if (N.ncol > 0) {
         RITZ_CHECK(find_held_modes(model, &N, &pairs));
