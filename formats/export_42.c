@@ -326,7 +326,6 @@ static ritz_status print_nodes(FILE *file, const void *what)
 
 /* ---- exporter ----------------------------------------------------------- */
 
-/* Both drafts are complete before either gets its name. */
 static ritz_status write_files(const body_42 *b, const char *flex,
                                const char *nodes)
 {
@@ -336,8 +335,7 @@ static ritz_status write_files(const body_42 *b, const char *flex,
     RITZ_CHECK_IN(nodes, ritz_draft_new(nodes, &second));
     RITZ_CHECK(ritz_sink_fill(&first, print_flex, b));
     RITZ_CHECK(ritz_sink_fill(&second, print_nodes, b));
-    RITZ_CHECK(ritz_draft_publish(&first));
-    return ritz_draft_publish(&second);
+    return ritz_draft_publish_all(2, (ritz_draft *[]){&first, &second});
 }
 
 static ritz_status say_losses(const body_42 *b, const char *nodes,

@@ -474,7 +474,6 @@ static ritz_status name_files(const char *output, external_element *e)
     return RITZ_OK;
 }
 
-/* All three are complete before any of them gets its name. */
 static ritz_status write_files(const external_element *e,
                                const ritz_matrices *list,
                                const ritz_output4_style *style)
@@ -487,9 +486,7 @@ static ritz_status write_files(const external_element *e,
     RITZ_CHECK(ritz_output4_fill(&op4, list->count, list->matrix, style));
     RITZ_CHECK(ritz_sink_fill(&assembly, put_assembly, e));
     RITZ_CHECK(ritz_sink_fill(&part, put_part, e));
-    RITZ_CHECK(ritz_draft_publish(&op4));
-    RITZ_CHECK(ritz_draft_publish(&assembly));
-    return ritz_draft_publish(&part);
+    return ritz_draft_publish_all(3, (ritz_draft *[]){&op4, &assembly, &part});
 }
 
 static ritz_status write_element(const ritz_export_object *object,

@@ -212,8 +212,7 @@ static ritz_status write_shapes(const ritz_export_object *object,
     RITZ_CHECK_IN(request->output, ritz_draft_new(request->output, &light));
     RITZ_CHECK(ritz_sink_fill_h5(&heavy, write_heavy, shapes));
     RITZ_CHECK(ritz_sink_fill(&light, print_light, &pair));
-    RITZ_CHECK(ritz_draft_publish(&heavy));
-    RITZ_CHECK(ritz_draft_publish(&light));
+    RITZ_CHECK(ritz_draft_publish_all(2, (ritz_draft *[]){&heavy, &light}));
     RITZ_CHECK(ritz_shapes_say(shapes, report));
     return ritz_export_say(report,
                            "the numbers are in %.200s, which must "

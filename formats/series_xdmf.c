@@ -129,8 +129,7 @@ static ritz_status finish(ritz_series *series, const char *path)
     RITZ_CHECK_IN(x->beside, ritz_h5_finish(&x->file));
     RITZ_CHECK_IN(path, ritz_draft_new(path, &light));
     RITZ_CHECK(ritz_sink_fill(&light, print_light, series));
-    RITZ_CHECK(ritz_draft_publish(&x->heavy));
-    return ritz_draft_publish(&light);
+    return ritz_draft_publish_all(2, (ritz_draft *[]){&x->heavy, &light});
 }
 
 static void end(ritz_series *series)

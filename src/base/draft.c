@@ -566,6 +566,24 @@ ritz_status ritz_draft_publish(ritz_draft *draft)
     return RITZ_OK;
 }
 
+ritz_status ritz_draft_publish_all(int64_t count, ritz_draft *const *draft)
+{
+    ritz_draft *all = NULL;
+    ritz_status status = RITZ_OK;
+
+    if (held.active) {
+        for (int64_t k = 0; k < count; k++)
+            RITZ_CHECK(ritz_draft_publish(draft[k]));
+        return RITZ_OK;
+    }
+    RITZ_CHECK_NEW(all, count);
+    for (int64_t k = 0; k < count; k++)
+        RITZ_MOVE(all[k], *draft[k]);
+    status = name_all(count, all);
+    RITZ_FREE_EACH(ritz_draft, count, all);
+    return status;
+}
+
 void ritz_draft_free(ritz_draft *draft)
 {
     if (draft->name) {

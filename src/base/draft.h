@@ -53,6 +53,12 @@ ritz_status ritz_draft_new(const char *path, ritz_draft *out);
  * empty. */
 ritz_status ritz_draft_publish(ritz_draft *draft);
 
+/**
+ * Publish files that belong together, all or none: if one cannot be renamed,
+ * those already renamed are removed. The drafts are then empty.
+ */
+ritz_status ritz_draft_publish_all(int64_t count, ritz_draft *const *draft);
+
 /** Rename the draft to its path now, even while others are held. */
 ritz_status ritz_draft_publish_now(ritz_draft *draft);
 

@@ -291,6 +291,35 @@ static void a_failed_rename_removes_the_other_held_file(void **state)
     rmdir(other);
 }
 
+static void files_that_belong_together_appear_all_or_none(void **state)
+{
+    static const char other[] = "test_draft.two";
+
+    (void)state;
+    for (int fails = 0; fails < 2; fails++) {
+        ritz_draft first = {0}, second = {0};
+
+        assert_ok(ritz_draft_new(path, &first));
+        assert_ok(ritz_draft_new(other, &second));
+        put(first.name, '1');
+        put(second.name, '2');
+        if (fails) {
+            remove(other);
+            assert_int_equal(mkdir(other, 0777), 0);
+            assert_fails(
+                ritz_draft_publish_all(2, (ritz_draft *[]){&first, &second}),
+                RITZ_ERR_FILE, "cannot replace");
+        } else {
+            assert_ok(
+                ritz_draft_publish_all(2, (ritz_draft *[]){&first, &second}));
+        }
+        assert_int_equal(get(path), fails ? 0 : '1');
+        assert_null(first.name);
+        assert_null(second.path);
+    }
+    rmdir(other);
+}
+
 static void inputs_are_not_replaced(void **state)
 {
     static const char other[] = "test_draft.two";
@@ -555,6 +584,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(one_file_has_many_names),
     cmocka_unit_test(held_drafts_appear_together_or_not_at_all),
     cmocka_unit_test(a_failed_rename_removes_the_other_held_file),
+    cmocka_unit_test(files_that_belong_together_appear_all_or_none),
     cmocka_unit_test(inputs_are_not_replaced),
     cmocka_unit_test(no_file_is_written_twice_by_one_program),
     cmocka_unit_test(survives_every_allocation),
