@@ -192,7 +192,7 @@ static ritz_status note_measures(int64_t order, ritz_reduced *reduced)
 
     if (row < 0 || n->order[row] != order)
         return RITZ_OK;
-    snprintf(where, sizeof where, "of %" PRId64 " columns, when it was made",
+    snprintf(where, sizeof where, "%" PRId64 " columns, when it was made",
              order);
     for (int64_t j = 0; j < n->num_errors; j++) {
         double value = ritz_dense_col(&n->value, j)[row];

@@ -178,7 +178,7 @@ static void a_prefix_knows_what_was_noted_of_it_alone(void **state)
                         "frequency-relative-bound");
     assert_near(prefix.estimates.item->value, 0.125, 0.0);
     assert_string_equal(prefix.estimates.item->where,
-                        "of 16 columns, when it was made");
+                        "16 columns, when it was made");
     assert_int_equal(prefix.errors.count, 1);
     assert_string_equal(prefix.errors.item->name, "mac");
     assert_int_equal(prefix.nested.count, 1);
