@@ -88,8 +88,11 @@ static fit choose_fit(const effector *e, const rigid_part *whole)
     const bool moves = p > RITZ_NO_PARTICIPATION * sqrt(whole->mass);
     const bool turns = h > RITZ_NO_PARTICIPATION * sqrt(trace);
 
+    /* an h that is rounding, as of a mode along the line to the grid, has any
+       direction */
     if (moves)
-        return e->skew <= RITZ_SKEW_PARTICIPATION ? FIT_SPRING : FIT_NONE;
+        return !turns || e->skew <= RITZ_SKEW_PARTICIPATION ? FIT_SPRING
+                                                            : FIT_NONE;
     return turns ? FIT_SPINNER : FIT_STILL;
 }
 
@@ -280,7 +283,7 @@ static void put_hub(FILE *file, const spacecraft *s)
 
 static void put_spring(FILE *file, const effector *e)
 {
-    const double omega = 2.0 * M_PI * e->hertz;
+    const double lambda = ritz_eigen_lambda(e->hertz);
     double r[3], axis[3];
     const double mass = place_mass(e, r);
 
@@ -289,7 +292,7 @@ static void put_spring(FILE *file, const effector *e)
     fprintf(file,
             "    {\"hertz\": %.17g, \"mass\": %.17g,\n     \"k\": %.17g, "
             "\"c\": %.17g,\n     \"place\": ",
-            e->hertz, mass, omega * omega * mass, e->rate * mass);
+            e->hertz, mass, lambda * mass, e->rate * mass);
     put_vector(file, r);
     fputs(",\n     \"axis\": ", file);
     put_vector(file, axis);
@@ -298,7 +301,7 @@ static void put_spring(FILE *file, const effector *e)
 
 static void put_spinner(FILE *file, const effector *e)
 {
-    const double omega = 2.0 * M_PI * e->hertz;
+    const double lambda = ritz_eigen_lambda(e->hertz);
     const double inertia = ritz_dot(e->h, e->h);
     double axis[3];
 
@@ -307,7 +310,7 @@ static void put_spinner(FILE *file, const effector *e)
     fprintf(file,
             "    {\"hertz\": %.17g, \"inertia\": %.17g,\n     \"k\": %.17g, "
             "\"c\": %.17g,\n     \"axis\": ",
-            e->hertz, inertia, omega * omega * inertia, e->rate * inertia);
+            e->hertz, inertia, lambda * inertia, e->rate * inertia);
     put_vector(file, axis);
     fputs("},\n", file);
 }

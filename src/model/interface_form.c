@@ -479,8 +479,9 @@ ritz_status ritz_interface_form_ground(const ritz_interface_form *form,
                 fmax(out->rigid_hz, ritz_eigen_hertz(stiffness / mass));
     }
     RITZ_CHECK(ritz_eigen_dense(&form->K, &form->M, &pairs));
-    if (pairs.num_rigid < pairs.Phi.ncol)
-        out->flexible_hz = ritz_eigen_hertz(pairs.lambda[pairs.num_rigid]);
+    if (pairs.num_rigid < pairs.Phi.ncol) /* negative where K is indefinite */
+        out->flexible_hz =
+            fabs(ritz_eigen_hertz(pairs.lambda[pairs.num_rigid]));
     out->holds = out->rigid_hz > RITZ_HELD * out->flexible_hz;
     return RITZ_OK;
 }

@@ -55,7 +55,8 @@ ritz_status ritz_interface_form_of(const ritz_reduced *reduced,
 typedef struct ritz_interface_ground {
     double rigid_hz;    /* largest sqrt(r'K r / r'M r) of the six rigid motions
                            r of the interface; rounding where it is free */
-    double flexible_hz; /* of the first flexible mode; 0: there is none */
+    double flexible_hz; /* of the first flexible mode, its size where K is
+                           indefinite; 0: there is none */
     bool holds;         /* rigid_hz is more than RITZ_HELD of flexible_hz */
 } ritz_interface_ground;
 

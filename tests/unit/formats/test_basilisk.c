@@ -182,9 +182,10 @@ static void assert_refused(const ritz_reduced *body, const char *words)
     assert_int_equal(access(path, F_OK), -1);
 }
 
-/* Participations of the third mode along and about x. */
-static void couple_third(ritz_reduced *body, double p, double h)
+/* Participations of the third mode along and about x, and about y. */
+static void couple_third(ritz_reduced *body, double p, double h, double h_y)
 {
+    ritz_dense_col(&body->M, 8)[4] = ritz_dense_col(&body->M, 4)[8] = h_y;
     ritz_dense_col(&body->M, 8)[0] = ritz_dense_col(&body->M, 0)[8] = p;
     ritz_dense_col(&body->M, 8)[3] = ritz_dense_col(&body->M, 3)[8] = h;
 }
@@ -195,19 +196,59 @@ static void a_hub_without_mass_or_inertia_is_refused(void **state)
     double *M = body->M.val;
 
     /* a mass of 3 along z and one along x, of 4 in each direction */
-    couple_third(body, sqrt(3.0), 0.0);
+    couple_third(body, sqrt(3.0), 0.0, 0.1);
     M[0] = M[ORDER + 1] = M[2 * ORDER + 2] = 4.0;
     M[4 * ORDER + 4] = 60.0;
     assert_refused(body, "the effectors have more mass than the component, and "
                          "leave the hub -2");
     M[0] = M[ORDER + 1] = M[2 * ORDER + 2] = 20.0;
     M[4 * ORDER + 4] = 30.0;
-    couple_third(body, 0.5, 0.5);
+    couple_third(body, 0.5, 0.5, 0.1);
     /* the mass at x = 2 takes 12 about z, where it does not move */
     M[5 * ORDER + 5] = 12.0;
     assert_refused(body, "the effectors leave the hub a moment of inertia of "
                          "-2.11765");
     M[5 * ORDER + 5] = 30.0;
+}
+
+/* What a mode along the line to the grid has as rotation is rounding, whose
+   direction means nothing. */
+static void a_mode_along_its_line_is_a_spring(void **state)
+{
+    const double mass = 0.25, ahead[3] = {1, 0, 0};
+    const char *path = folder_path("line.py");
+    RITZ_OWN(ritz_export_report) report = {0};
+    RITZ_OWN_ARRAY char *text = NULL;
+    const char *second = NULL;
+
+    couple_third(*state, 0.5, 1e-16, 0.0);
+    assert_ok(write_module(*state, path, &report));
+    couple_third(*state, 0.5, 0.5, 0.1);
+    assert_ok(ritz_text_read(path, &text));
+    second = strstr(text, "{\"hertz\": 3");
+    assert_non_null(second);
+    assert_numbers(second, "\"mass\"", 1, &mass);
+    assert_numbers(second, "\"axis\"", 3, ahead);
+}
+
+/* An unstable mode, which --force exports, grows in Basilisk too. */
+static void a_negative_stiffness_keeps_its_sign(void **state)
+{
+    ritz_reduced *body = *state;
+    const double k1 = -3.0 * 4.0 * M_PI * M_PI;
+    const double k2 = -2.0 * 16.0 * M_PI * M_PI;
+    const char *path = folder_path("unstable.py");
+    RITZ_OWN(ritz_export_report) report = {0};
+    RITZ_OWN_ARRAY char *text = NULL;
+
+    for (int64_t k = 6; k < 8; k++)
+        ritz_dense_col(&body->K, k)[k] *= -1.0;
+    assert_ok(write_module(body, path, &report));
+    for (int64_t k = 6; k < 8; k++)
+        ritz_dense_col(&body->K, k)[k] *= -1.0;
+    assert_ok(ritz_text_read(path, &text));
+    assert_numbers(strstr(text, "SPRINGS = ["), "\"k\"", 1, &k1);
+    assert_numbers(strstr(text, "SPINNERS = ["), "\"k\"", 1, &k2);
 }
 
 static void modes_of_which_none_fits_are_refused(void **state)
@@ -255,6 +296,8 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(modes_become_springs_and_spinning_bodies),
     cmocka_unit_test(the_hub_keeps_the_rest),
     cmocka_unit_test(a_hub_without_mass_or_inertia_is_refused),
+    cmocka_unit_test(a_mode_along_its_line_is_a_spring),
+    cmocka_unit_test(a_negative_stiffness_keeps_its_sign),
     cmocka_unit_test(modes_of_which_none_fits_are_refused),
     cmocka_unit_test(other_bodies_are_refused),
     cmocka_unit_test(no_allocation_failure_leaks),
