@@ -30,8 +30,16 @@ LEVELS = [
     ['print', 'claims'],
     ['chart'],
     ['tools', 'libexec'],
+    ['fmu'],
 ]
 LEVEL = {room: k for k, rooms in enumerate(LEVELS) for room in rooms}
+
+# The program inside FMUs: it is linked with nothing of ours, and nothing of
+# ours with it.
+ALONE = 'fmu'
+
+# Files of others, kept as their authors wrote them.
+FOREIGN = ('fmu/fmi',)
 
 # Files that define one table, and the table's name.
 TABLES = {
@@ -72,8 +80,10 @@ def bare(text):
 
 def read_tree(root):
     files = {}
-    for top in ('include', 'src', 'formats', 'tools', 'libexec'):
+    for top in ('include', 'src', 'formats', 'tools', 'libexec', 'fmu'):
         for folder, _, names in os.walk(os.path.join(root, top)):
+            if os.path.relpath(folder, root) in FOREIGN:
+                continue
             for name in names:
                 if name.endswith(('.c', '.h')):
                     path = os.path.join(folder, name)
@@ -120,22 +130,40 @@ def rooms_are_ordered(files, code, graph):
     for path in files:
         if not path.startswith('include') and room_of(path) not in LEVEL:
             yield f"{path}: the room '{room_of(path)}' is not in LEVELS"
-    for path, text in files.items():
-        if path.startswith('include'):
-            continue
-        for name in re.findall(r'#include "([^"]+)"', text):
-            there = next((p for p in ('src/' + name, name, 'tools/' + name)
-                          if p in files), None)
-            if there and above(path, there):
-                yield f'{path}: includes {name}, of a room above its own'
+    for path, there, name in includes(files):
+        if above(path, there):
+            yield f'{path}: includes {name}, of a room above its own'
     for (path, there), names in sorted(graph.items()):
         if above(path, there):
             yield f'{path}: uses {min(names)} of {there}, a room above its own'
 
 
+def includes(files):
+    """Files with the file that each of their #include names, of the tree."""
+    for path, text in files.items():
+        if path.startswith('include'):
+            continue
+        beside = os.path.dirname(path) + '/'
+        for name in re.findall(r'#include ["<]([^">]+)[">]', text):
+            there = next((p for p in ('src/' + name, name, 'tools/' + name,
+                                      'include/' + name, beside + name)
+                          if p in files), None)
+            if there:
+                yield path, there, name
+
+
+def the_program_of_fmus_is_alone(files, code, graph):
+    used = [(path, there, name) for path, there, name in includes(files)]
+    used += [(path, there, min(names)) for (path, there), names
+             in sorted(graph.items())]
+    for path, there, name in used:
+        if (room_of(path) == ALONE) != (room_of(there) == ALONE):
+            yield f'{path}: uses {name} of {there}: {ALONE}/ is alone'
+
+
 def above(path, there):
     mine, other = room_of(path), room_of(there)
-    return mine != other and LEVEL.get(other, 0) >= LEVEL.get(mine, 0)
+    return mine != other and LEVEL.get(other, -1) >= LEVEL.get(mine, 0)
 
 
 def files_form_no_circle(files, code, graph):
@@ -198,7 +226,7 @@ FILE_CONSTANT = re.compile(r'^static const double \w+ =', re.M)
 
 def tolerances_are_at_home(files, code, graph):
     for path, text in code.items():
-        if path == HOME or not path.startswith(('src', 'formats')):
+        if path == HOME or not path.startswith(('src', 'formats', 'fmu')):
             continue
         lines = files[path].split('\n')
         for number, line in enumerate(text.split('\n')):
@@ -235,8 +263,9 @@ def any_blas_will_do(files, code, graph):
                        f'not have: only {BLAS_HOME} may')
 
 
-RULES = [rooms_are_ordered, files_form_no_circle, tables_hold_a_table,
-         tolerances_are_at_home, types_have_one_meaning, any_blas_will_do]
+RULES = [rooms_are_ordered, the_program_of_fmus_is_alone, files_form_no_circle,
+         tables_hold_a_table, tolerances_are_at_home, types_have_one_meaning,
+         any_blas_will_do]
 
 
 def main(root):
