@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: 0BSD */
-/* Functions of FMI 3.0 [FmiThree2024] that are about what a linear model does
-   not have: types other than Float64, clocks, structural parameters. */
+/*
+ * The functions of FMI 3.0 [FmiThree2024] for types other than Float64, for
+ * clocks and for structural parameters. The model has none of these, but an
+ * importer looks for every function of the standard, so each is here and
+ * refuses. Parameters that nothing reads have no names.
+ */
 #include "instance.h"
 
 #include "fmi/fmi3Functions.h"
@@ -10,7 +14,9 @@ static fmi3Status refuse(const fmu_instance *s, const char *sentence)
     return s ? (fmi3Status)fmu_complain(s, "%s", sentence) : fmi3Error;
 }
 
-/* All variables are Float64. */
+/* ---- variables of other types ------------------------------------------- */
+
+/* A call that names no variable asks for nothing, and succeeds. */
 static fmi3Status refuse_type(const fmu_instance *s, size_t count)
 {
     if (s && count == 0)
@@ -18,79 +24,62 @@ static fmi3Status refuse_type(const fmu_instance *s, size_t count)
     return refuse(s, "all variables are Float64");
 }
 
-#define ABSENT_TYPE(NAME)                                                      \
-    fmi3Status fmi3Get##NAME(                                                  \
-        fmi3Instance instance, const fmi3ValueReference valueReferences[],     \
-        size_t nValueReferences, fmi3##NAME values[], size_t nValues)          \
+/* A function that gets or sets `count` variables of a type. */
+#define REFUSE_TYPE(FUNCTION, ...)                                             \
+    fmi3Status FUNCTION(fmi3Instance instance, const fmi3ValueReference[],     \
+                        size_t count, __VA_ARGS__)                             \
     {                                                                          \
-        (void)valueReferences;                                                 \
-        (void)values;                                                          \
-        (void)nValues;                                                         \
-        return refuse_type(instance, nValueReferences);                        \
-    }                                                                          \
-    fmi3Status fmi3Set##NAME(                                                  \
-        fmi3Instance instance, const fmi3ValueReference valueReferences[],     \
-        size_t nValueReferences, const fmi3##NAME values[], size_t nValues)    \
-    {                                                                          \
-        (void)valueReferences;                                                 \
-        (void)values;                                                          \
-        (void)nValues;                                                         \
-        return refuse_type(instance, nValueReferences);                        \
+        return refuse_type(instance, count);                                   \
     }
-ABSENT_TYPE(Float32)
-ABSENT_TYPE(Int8)
-ABSENT_TYPE(UInt8)
-ABSENT_TYPE(Int16)
-ABSENT_TYPE(UInt16)
-ABSENT_TYPE(Int32)
-ABSENT_TYPE(UInt32)
-ABSENT_TYPE(Int64)
-ABSENT_TYPE(UInt64)
-ABSENT_TYPE(Boolean)
-ABSENT_TYPE(String)
-#undef ABSENT_TYPE
 
-fmi3Status fmi3GetBinary(fmi3Instance instance,
-                         const fmi3ValueReference valueReferences[],
-                         size_t nValueReferences, size_t valueSizes[],
-                         fmi3Binary values[], size_t nValues)
+/* Both functions of a type whose values are one array. */
+#define REFUSE_PAIR(TYPE)                                                      \
+    REFUSE_TYPE(fmi3Get##TYPE, fmi3##TYPE[], size_t)                           \
+    REFUSE_TYPE(fmi3Set##TYPE, const fmi3##TYPE[], size_t)
+
+REFUSE_PAIR(Float32)
+REFUSE_PAIR(Int8)
+REFUSE_PAIR(UInt8)
+REFUSE_PAIR(Int16)
+REFUSE_PAIR(UInt16)
+REFUSE_PAIR(Int32)
+REFUSE_PAIR(UInt32)
+REFUSE_PAIR(Int64)
+REFUSE_PAIR(UInt64)
+REFUSE_PAIR(Boolean)
+REFUSE_PAIR(String)
+REFUSE_TYPE(fmi3GetBinary, size_t[], fmi3Binary[], size_t)
+REFUSE_TYPE(fmi3SetBinary, const size_t[], const fmi3Binary[], size_t)
+REFUSE_TYPE(fmi3GetClock, fmi3Clock[])
+REFUSE_TYPE(fmi3SetClock, const fmi3Clock[])
+
+/* ---- clocks ------------------------------------------------------------- */
+
+/* A function of some clocks, with its arguments behind their references. */
+#define REFUSE_CLOCK(FUNCTION, ...)                                            \
+    fmi3Status FUNCTION(fmi3Instance instance, const fmi3ValueReference[],     \
+                        size_t, __VA_ARGS__)                                   \
+    {                                                                          \
+        return refuse(instance, "it has no clocks");                           \
+    }
+
+REFUSE_CLOCK(fmi3GetIntervalDecimal, fmi3Float64[], fmi3IntervalQualifier[])
+REFUSE_CLOCK(fmi3GetIntervalFraction, fmi3UInt64[], fmi3UInt64[],
+             fmi3IntervalQualifier[])
+REFUSE_CLOCK(fmi3GetShiftDecimal, fmi3Float64[])
+REFUSE_CLOCK(fmi3GetShiftFraction, fmi3UInt64[], fmi3UInt64[])
+REFUSE_CLOCK(fmi3SetIntervalDecimal, const fmi3Float64[])
+REFUSE_CLOCK(fmi3SetIntervalFraction, const fmi3UInt64[], const fmi3UInt64[])
+REFUSE_CLOCK(fmi3SetShiftDecimal, const fmi3Float64[])
+REFUSE_CLOCK(fmi3SetShiftFraction, const fmi3UInt64[], const fmi3UInt64[])
+
+fmi3Status fmi3ActivateModelPartition(fmi3Instance instance, fmi3ValueReference,
+                                      fmi3Float64)
 {
-    (void)valueReferences;
-    (void)valueSizes;
-    (void)values;
-    (void)nValues;
-    return refuse_type(instance, nValueReferences);
+    return refuse(instance, "it has no clocks");
 }
 
-fmi3Status fmi3SetBinary(fmi3Instance instance,
-                         const fmi3ValueReference valueReferences[],
-                         size_t nValueReferences, const size_t valueSizes[],
-                         const fmi3Binary values[], size_t nValues)
-{
-    (void)valueReferences;
-    (void)valueSizes;
-    (void)values;
-    (void)nValues;
-    return refuse_type(instance, nValueReferences);
-}
-
-fmi3Status fmi3GetClock(fmi3Instance instance,
-                        const fmi3ValueReference valueReferences[],
-                        size_t nValueReferences, fmi3Clock values[])
-{
-    (void)valueReferences;
-    (void)values;
-    return refuse_type(instance, nValueReferences);
-}
-
-fmi3Status fmi3SetClock(fmi3Instance instance,
-                        const fmi3ValueReference valueReferences[],
-                        size_t nValueReferences, const fmi3Clock values[])
-{
-    (void)valueReferences;
-    (void)values;
-    return refuse_type(instance, nValueReferences);
-}
+/* ---- structural parameters ---------------------------------------------- */
 
 fmi3Status fmi3EnterConfigurationMode(fmi3Instance instance)
 {
@@ -100,116 +89,4 @@ fmi3Status fmi3EnterConfigurationMode(fmi3Instance instance)
 fmi3Status fmi3ExitConfigurationMode(fmi3Instance instance)
 {
     return refuse(instance, "it has no structural parameters");
-}
-
-static fmi3Status refuse_clock(const fmu_instance *s)
-{
-    return refuse(s, "it has no clocks");
-}
-
-fmi3Status fmi3GetIntervalDecimal(fmi3Instance instance,
-                                  const fmi3ValueReference valueReferences[],
-                                  size_t nValueReferences,
-                                  fmi3Float64 intervals[],
-                                  fmi3IntervalQualifier qualifiers[])
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)intervals;
-    (void)qualifiers;
-    return refuse_clock(instance);
-}
-
-fmi3Status fmi3GetIntervalFraction(fmi3Instance instance,
-                                   const fmi3ValueReference valueReferences[],
-                                   size_t nValueReferences,
-                                   fmi3UInt64 counters[],
-                                   fmi3UInt64 resolutions[],
-                                   fmi3IntervalQualifier qualifiers[])
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)counters;
-    (void)resolutions;
-    (void)qualifiers;
-    return refuse_clock(instance);
-}
-
-fmi3Status fmi3GetShiftDecimal(fmi3Instance instance,
-                               const fmi3ValueReference valueReferences[],
-                               size_t nValueReferences, fmi3Float64 shifts[])
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)shifts;
-    return refuse_clock(instance);
-}
-
-fmi3Status fmi3GetShiftFraction(fmi3Instance instance,
-                                const fmi3ValueReference valueReferences[],
-                                size_t nValueReferences, fmi3UInt64 counters[],
-                                fmi3UInt64 resolutions[])
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)counters;
-    (void)resolutions;
-    return refuse_clock(instance);
-}
-
-fmi3Status fmi3SetIntervalDecimal(fmi3Instance instance,
-                                  const fmi3ValueReference valueReferences[],
-                                  size_t nValueReferences,
-                                  const fmi3Float64 intervals[])
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)intervals;
-    return refuse_clock(instance);
-}
-
-fmi3Status fmi3SetIntervalFraction(fmi3Instance instance,
-                                   const fmi3ValueReference valueReferences[],
-                                   size_t nValueReferences,
-                                   const fmi3UInt64 counters[],
-                                   const fmi3UInt64 resolutions[])
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)counters;
-    (void)resolutions;
-    return refuse_clock(instance);
-}
-
-fmi3Status fmi3SetShiftDecimal(fmi3Instance instance,
-                               const fmi3ValueReference valueReferences[],
-                               size_t nValueReferences,
-                               const fmi3Float64 shifts[])
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)shifts;
-    return refuse_clock(instance);
-}
-
-fmi3Status fmi3SetShiftFraction(fmi3Instance instance,
-                                const fmi3ValueReference valueReferences[],
-                                size_t nValueReferences,
-                                const fmi3UInt64 counters[],
-                                const fmi3UInt64 resolutions[])
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)counters;
-    (void)resolutions;
-    return refuse_clock(instance);
-}
-
-fmi3Status fmi3ActivateModelPartition(fmi3Instance instance,
-                                      fmi3ValueReference clockReference,
-                                      fmi3Float64 activationTime)
-{
-    (void)clockReference;
-    (void)activationTime;
-    return refuse_clock(instance);
 }
