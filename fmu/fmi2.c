@@ -4,8 +4,6 @@
 
 #include "fmi/fmi2Functions.h"
 
-#include <stdlib.h>
-
 static void log_sentence(fmu_function *callback, void *environment,
                          const char *name, fmu_status status, const char *text)
 {
@@ -29,8 +27,8 @@ const char *fmi2GetVersion(void)
     return "2.0";
 }
 
-/* There is nothing to switch: failures are always logged, and nothing else
- * is. */
+/* Failures are always logged and nothing else is, so logging cannot be
+   switched. */
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingOn,
                                size_t nCategories,
                                const fmi2String categories[])
@@ -80,14 +78,10 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined,
     return settle(c ? fmu_set_time(c, startTime) : FMU_ERROR);
 }
 
-/* From one mode to the next. */
 static fmi2Status change_mode(fmu_instance *s, fmu_mode from, fmu_mode to,
                               const char *function)
 {
-    if (!s || fmu_expect(s, from, function) != FMU_OK)
-        return fmi2Error;
-    s->mode = to;
-    return fmi2OK;
+    return settle(fmu_change_mode(s, from, to, function));
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component c)
@@ -180,77 +174,45 @@ fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference vr[],
     return refuse_type(c, nvr);
 }
 
-/* ---- what changes ------------------------------------------------------- */
+/* ---- states that an importer keeps --------------------------------------- */
 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *FMUstate)
 {
-    if (!c || !FMUstate)
-        return fmi2Error;
-    if (!*FMUstate)
-        *FMUstate = malloc(fmu_state_size(c));
-    if (!*FMUstate)
-        return settle(fmu_complain(c, "there is no memory for a state"));
-    fmu_state_save(c, *FMUstate);
-    return fmi2OK;
+    return settle(fmu_state_get(c, FMUstate));
 }
 
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate FMUstate)
 {
-    return settle(c && FMUstate ? fmu_state_load(c, FMUstate) : FMU_ERROR);
+    return settle(fmu_state_set(c, FMUstate));
 }
 
 fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *FMUstate)
 {
-    if (!c)
-        return fmi2Error;
-    if (FMUstate) {
-        free(*FMUstate);
-        *FMUstate = NULL;
-    }
-    return fmi2OK;
+    return settle(fmu_state_free(c, FMUstate));
 }
 
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate FMUstate,
                                       size_t *size)
 {
-    if (!c || !FMUstate)
-        return fmi2Error;
-    *size = fmu_state_size(c);
-    return fmi2OK;
+    return settle(fmu_state_size(c, FMUstate, size));
 }
 
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate FMUstate,
                                  fmi2Byte serializedState[], size_t size)
 {
-    const char *from = FMUstate;
-
-    if (!c || !FMUstate)
-        return fmi2Error;
-    if (size < fmu_state_size(c))
-        return settle(fmu_complain(c, "a state has %zu bytes, not %zu",
-                                   fmu_state_size(c), size));
-    for (size_t k = 0; k < fmu_state_size(c); k++)
-        serializedState[k] = from[k];
-    return fmi2OK;
+    return settle(fmu_state_serialize(c, FMUstate,
+                                      (unsigned char *)serializedState, size));
 }
 
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c,
                                    const fmi2Byte serializedState[],
                                    size_t size, fmi2FMUstate *FMUstate)
 {
-    const unsigned char *from = (const unsigned char *)serializedState;
-    unsigned char *to = NULL;
-
-    if (!c || !FMUstate || fmu_state_check(c, from, size) != FMU_OK)
-        return fmi2Error;
-    to = *FMUstate ? *FMUstate : malloc(size);
-    if (!to)
-        return settle(fmu_complain(c, "there is no memory for a state"));
-    for (size_t k = 0; k < size; k++)
-        to[k] = from[k];
-    *FMUstate = to;
-    return fmi2OK;
+    return settle(fmu_state_deserialize(
+        c, (const unsigned char *)serializedState, size, FMUstate));
 }
+
+/* ---- derivatives -------------------------------------------------------- */
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c,
                                         const fmi2ValueReference vUnknown_ref[],

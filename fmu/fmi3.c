@@ -4,9 +4,6 @@
 
 #include "fmi/fmi3Functions.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 static void log_sentence(fmu_function *callback, void *environment,
                          const char *name, fmu_status status, const char *text)
 {
@@ -32,8 +29,8 @@ const char *fmi3GetVersion(void)
     return fmi3Version;
 }
 
-/* There is nothing to switch: failures are always logged, and nothing else
- * is. */
+/* Failures are always logged and nothing else is, so logging cannot be
+   switched. */
 fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean loggingOn,
                                size_t nCategories,
                                const fmi3String categories[])
@@ -126,14 +123,10 @@ void fmi3FreeInstance(fmi3Instance instance)
     fmu_free(instance);
 }
 
-/* From one mode to the next. */
 static fmi3Status change_mode(fmu_instance *s, fmu_mode from, fmu_mode to,
                               const char *function)
 {
-    if (!s || fmu_expect(s, from, function) != FMU_OK)
-        return fmi3Error;
-    s->mode = to;
-    return fmi3OK;
+    return settle(fmu_change_mode(s, from, to, function));
 }
 
 fmi3Status
@@ -271,69 +264,42 @@ fmi3Status fmi3GetAdjointDerivative(fmi3Instance instance,
     return differentiate(instance, &partials, true, seed, sensitivity);
 }
 
-/* ---- what changes ------------------------------------------------------- */
+/* ---- states that an importer keeps --------------------------------------- */
 
 fmi3Status fmi3GetFMUState(fmi3Instance instance, fmi3FMUState *FMUState)
 {
-    if (!instance || !FMUState)
-        return fmi3Error;
-    if (!*FMUState)
-        *FMUState = malloc(fmu_state_size(instance));
-    if (!*FMUState)
-        return refuse(instance, "there is no memory for a state");
-    fmu_state_save(instance, *FMUState);
-    return fmi3OK;
+    return settle(fmu_state_get(instance, FMUState));
 }
 
 fmi3Status fmi3SetFMUState(fmi3Instance instance, fmi3FMUState FMUState)
 {
-    return settle(instance && FMUState ? fmu_state_load(instance, FMUState)
-                                       : FMU_ERROR);
+    return settle(fmu_state_set(instance, FMUState));
 }
 
 fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *FMUState)
 {
-    if (!instance)
-        return fmi3Error;
-    if (FMUState) {
-        free(*FMUState);
-        *FMUState = NULL;
-    }
-    return fmi3OK;
+    return settle(fmu_state_free(instance, FMUState));
 }
 
 fmi3Status fmi3SerializedFMUStateSize(fmi3Instance instance,
                                       fmi3FMUState FMUState, size_t *size)
 {
-    if (!instance || !FMUState)
-        return fmi3Error;
-    *size = fmu_state_size(instance);
-    return fmi3OK;
+    return settle(fmu_state_size(instance, FMUState, size));
 }
 
 fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState FMUState,
                                  fmi3Byte serializedState[], size_t size)
 {
-    if (!instance || !FMUState ||
-        check_count(instance, size, fmu_state_size(instance)) != fmi3OK)
-        return fmi3Error;
-    memcpy(serializedState, FMUState, size);
-    return fmi3OK;
+    return settle(
+        fmu_state_serialize(instance, FMUState, serializedState, size));
 }
 
 fmi3Status fmi3DeserializeFMUState(fmi3Instance instance,
                                    const fmi3Byte serializedState[],
                                    size_t size, fmi3FMUState *FMUState)
 {
-    if (!instance || !FMUState ||
-        fmu_state_check(instance, serializedState, size) != FMU_OK)
-        return fmi3Error;
-    if (!*FMUState)
-        *FMUState = malloc(size);
-    if (!*FMUState)
-        return refuse(instance, "there is no memory for a state");
-    memcpy(*FMUState, serializedState, size);
-    return fmi3OK;
+    return settle(
+        fmu_state_deserialize(instance, serializedState, size, FMUState));
 }
 
 /* ---- events, of which there are none ------------------------------------ */

@@ -39,6 +39,15 @@ fmu_status fmu_expect(const fmu_instance *instance, fmu_mode mode,
                         function, modes[instance->mode], modes[mode]);
 }
 
+fmu_status fmu_change_mode(fmu_instance *instance, fmu_mode from, fmu_mode to,
+                           const char *function)
+{
+    if (!instance || fmu_expect(instance, from, function) != FMU_OK)
+        return FMU_ERROR;
+    instance->mode = to;
+    return FMU_OK;
+}
+
 /* ---- a new instance ----------------------------------------------------- */
 
 static int hex_digit(char c)
@@ -434,64 +443,5 @@ fmu_status fmu_dependencies(const fmu_instance *instance, unsigned unknown,
             known[*count] = (unsigned)k;
         (*count)++;
     }
-    return FMU_OK;
-}
-
-/* ---- what changes ------------------------------------------------------- */
-
-/* A saved state has the token, the mode, the time, inputs and states. */
-enum { STATE_HEAD = FMU_TOKEN_SIZE - 1, STATE_NUMBERS = 2 };
-
-size_t fmu_state_size(const fmu_instance *instance)
-{
-    return STATE_HEAD + (STATE_NUMBERS + instance->model.num_inputs +
-                         instance->model.num_states) *
-                            sizeof(double);
-}
-
-void fmu_state_save(const fmu_instance *instance, unsigned char *bytes)
-{
-    const size_t p = instance->model.num_inputs;
-    const double head[STATE_NUMBERS] = {(double)instance->mode, instance->time};
-
-    memcpy(bytes, instance->model.token, STATE_HEAD);
-    bytes += STATE_HEAD;
-    memcpy(bytes, head, sizeof head);
-    memcpy(bytes + sizeof head, instance->u, p * sizeof(double));
-    memcpy(bytes + sizeof head + p * sizeof(double), instance->x,
-           instance->model.num_states * sizeof(double));
-}
-
-fmu_status fmu_state_check(const fmu_instance *instance,
-                           const unsigned char *bytes, size_t size)
-{
-    double value = 0.0;
-
-    if (size != fmu_state_size(instance) ||
-        memcmp(bytes, instance->model.token, STATE_HEAD) != 0)
-        return fmu_complain(instance, "it is no state of this model");
-    for (size_t k = STATE_HEAD; k < size; k += sizeof value) {
-        memcpy(&value, bytes + k, sizeof value);
-        if (!isfinite(value) || (k == STATE_HEAD && value != 0.0 &&
-                                 value != 1.0 && value != 2.0 && value != 3.0))
-            return fmu_complain(instance, "the state holds %g", value);
-    }
-    return FMU_OK;
-}
-
-fmu_status fmu_state_load(fmu_instance *instance, const unsigned char *bytes)
-{
-    const size_t p = instance->model.num_inputs;
-    double head[STATE_NUMBERS];
-
-    if (fmu_state_check(instance, bytes, fmu_state_size(instance)) != FMU_OK)
-        return FMU_ERROR;
-    bytes += STATE_HEAD;
-    memcpy(head, bytes, sizeof head);
-    instance->mode = (fmu_mode)(int)head[0];
-    instance->time = head[1];
-    memcpy(instance->u, bytes + sizeof head, p * sizeof(double));
-    memcpy(instance->x, bytes + sizeof head + p * sizeof(double),
-           instance->model.num_states * sizeof(double));
     return FMU_OK;
 }

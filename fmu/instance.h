@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: 0BSD */
 /*
- * An instance of a model, and what both versions of FMI do with it. Value
- * references are: 0 the time, then inputs, outputs, states, derivatives of
- * states, from 1 on. Functions return a status that is the same number in both
- * versions, and log a sentence if it is not FMU_OK. Nothing is shared between
- * instances.
+ * An instance of a model, and the operations on it that both versions of FMI
+ * have. Value reference 0 is the time; from 1 on the references count first the
+ * inputs, then the outputs, the states and the derivatives of the states. A
+ * status is the same number in both versions. A function that does not return
+ * FMU_OK has logged a sentence that says why. Instances share no memory.
  */
 #ifndef RITZ_FMU_INSTANCE_H
 #define RITZ_FMU_INSTANCE_H
@@ -16,6 +16,8 @@ typedef enum fmu_status {
     FMU_ERROR = 3,
 } fmu_status;
 
+/* A model without events does the same in the event, continuous-time and step
+   modes of the standard: they are one mode here, FMU_RUNNING. */
 typedef enum fmu_mode {
     FMU_INSTANTIATED,
     FMU_INITIALISING,
@@ -27,7 +29,8 @@ typedef enum fmu_mode {
  * version. */
 typedef void fmu_function(void);
 
-/* How sentences reach the importer, by the callback of one version. */
+/* Calls the importer's logger with the arguments that one version of FMI
+   prescribes. */
 typedef void fmu_logger(fmu_function *callback, void *environment,
                         const char *name, fmu_status status, const char *text);
 
@@ -44,12 +47,12 @@ typedef struct fmu_instance {
     bool steps_itself; /* co-simulation */
     double time;
     double *x, *u; /* states, inputs */
-    double *work;  /* states */
+    double *work;  /* as long as x; the result of a step */
     char *name;
     fmu_callback to;
 } fmu_instance;
 
-/* How an importer requests a new instance. */
+/* Arguments with which an importer instantiates the model. */
 typedef struct fmu_request {
     const char *name, *token;
     const char *resources; /* path or URI of the folder */
@@ -57,8 +60,8 @@ typedef struct fmu_request {
     fmu_callback to;
 } fmu_request;
 
-/** NULL, and a sentence to the logger, if the resources are not those of the
- * token. */
+/** A new instance; NULL, with a sentence for the logger, if the resources
+ * cannot be read or belong to another instantiation token. */
 fmu_instance *fmu_new(const fmu_request *request);
 void fmu_free(fmu_instance *instance);
 
@@ -66,11 +69,17 @@ void fmu_free(fmu_instance *instance);
 fmu_status fmu_complain(const fmu_instance *instance, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/** FMU_ERROR unless the instance is in a mode. */
+/** FMU_ERROR unless the instance is in a mode; @p function is named in the
+ * sentence. */
 fmu_status fmu_expect(const fmu_instance *instance, fmu_mode mode,
                       const char *function);
 
-/** Inputs and states 0, time 0, instantiated. */
+/** Go from one mode to another; FMU_ERROR if the instance is NULL or not in
+ * mode @p from. */
+fmu_status fmu_change_mode(fmu_instance *instance, fmu_mode from, fmu_mode to,
+                           const char *function);
+
+/** Set inputs, states and time to 0 and the mode to FMU_INSTANTIATED. */
 fmu_status fmu_reset(fmu_instance *instance);
 
 fmu_status fmu_set_time(fmu_instance *instance, double time);
@@ -79,7 +88,8 @@ fmu_status fmu_get(const fmu_instance *instance, const unsigned *reference,
 fmu_status fmu_set(fmu_instance *instance, const unsigned *reference,
                    size_t count, const double *value);
 
-/** All states at once. @return FMU_ERROR unless there are @p count */
+/* Of all states at once; FMU_ERROR unless the model has @p count states. */
+
 fmu_status fmu_set_states(fmu_instance *instance, const double *x,
                           size_t count);
 fmu_status fmu_get_states(const fmu_instance *instance, double *x,
@@ -89,30 +99,60 @@ fmu_status fmu_get_nominals(const fmu_instance *instance, double *x,
 fmu_status fmu_get_derivatives(const fmu_instance *instance, double *dx,
                                size_t count);
 
-/** One step with inputs held; states stay what they were if it fails. */
+/** Advance by a step h > 0 from time @p from, while the inputs stay constant.
+ * If that fails, time and states are as before. */
 fmu_status fmu_do_step(fmu_instance *instance, double from, double h);
 
-/* Unknowns (outputs, derivatives) and knowns (inputs, states), by reference. */
+/* Value references of the variables that a Jacobian relates: unknowns are
+   outputs and derivatives, knowns are inputs and states. */
 typedef struct fmu_partials {
     const unsigned *unknown, *known;
     size_t num_unknowns, num_knowns;
 } fmu_partials;
 
-/** @p out of unknowns is the derivative times @p seed of knowns; of
- * @p adjoint, @p out of knowns its transpose times @p seed of unknowns. */
+/**
+ * With J = d unknown / d known: out = J seed, one number for each unknown; if
+ * @p adjoint, out = J' seed, one number for each known.
+ */
 fmu_status fmu_differentiate(const fmu_instance *instance,
                              const fmu_partials *partials, bool adjoint,
                              const double *seed, double *out);
 
-/** Non-zero dependencies of a reference, and which; @p known may be NULL. */
+/**
+ * Inputs and states on which an output or a derivative depends with a
+ * coefficient that is not zero.
+ *
+ * @param[out] known  their references; NULL: they are counted only
+ */
 fmu_status fmu_dependencies(const fmu_instance *instance, unsigned unknown,
                             unsigned *known, size_t *count);
 
-/* All that changes in an instance, as bytes. */
-size_t fmu_state_size(const fmu_instance *instance);
-void fmu_state_save(const fmu_instance *instance, unsigned char *bytes);
-fmu_status fmu_state_check(const fmu_instance *instance,
-                           const unsigned char *bytes, size_t size);
-fmu_status fmu_state_load(fmu_instance *instance, const unsigned char *bytes);
+/*
+ * A state of an instance is kept as bytes, which the importer owns through a
+ * pointer. Each function fails if the instance or the state is NULL.
+ */
+
+/** Keep what the instance is now, in new bytes if *state is NULL. */
+fmu_status fmu_state_get(const fmu_instance *instance, void **state);
+
+/** Return to a kept state. */
+fmu_status fmu_state_set(fmu_instance *instance, const void *state);
+
+/** Free a state and set *state to NULL. */
+fmu_status fmu_state_free(const fmu_instance *instance, void **state);
+
+/** How many bytes a state has. */
+fmu_status fmu_state_size(const fmu_instance *instance, const void *state,
+                          size_t *size);
+
+/** Copy a state to the first of @p size bytes, which an importer may store. */
+fmu_status fmu_state_serialize(const fmu_instance *instance, const void *state,
+                               unsigned char *bytes, size_t size);
+
+/** The state that such bytes hold; FMU_ERROR if they are no state of the
+ * model. */
+fmu_status fmu_state_deserialize(const fmu_instance *instance,
+                                 const unsigned char *bytes, size_t size,
+                                 void **state);
 
 #endif
