@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: 0BSD */
-/* The functions of FMI 2.0 [FmiTwo2024], by those of instance.h. */
+/* The functions of FMI 2.0 [FmiTwo2024]. Each calls one of instance.h. */
 #include "instance.h"
 
 #include "fmi/fmi2Functions.h"
@@ -75,7 +75,9 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined,
     (void)tolerance;
     (void)stopTimeDefined;
     (void)stopTime;
-    return settle(c ? fmu_set_time(c, startTime) : FMU_ERROR);
+    if (!c || fmu_expect(c, FMU_INSTANTIATED, "fmi2SetupExperiment") != FMU_OK)
+        return fmi2Error;
+    return settle(fmu_set_time(c, startTime));
 }
 
 static fmi2Status change_mode(fmu_instance *s, fmu_mode from, fmu_mode to,
@@ -118,61 +120,32 @@ fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[],
     return settle(c ? fmu_set(c, vr, nvr, value) : FMU_ERROR);
 }
 
-/* All variables are real. */
-static fmi2Status refuse_type(const fmu_instance *s, size_t nvr)
+/* ---- variables of other types, which there are not ---------------------- */
+
+/* A call that names no variable asks for nothing, and succeeds. */
+static fmi2Status refuse_type(const fmu_instance *s, size_t count)
 {
-    if (s && nvr == 0)
+    if (s && count == 0)
         return fmi2OK;
     return s ? settle(fmu_complain(s, "all variables are real")) : fmi2Error;
 }
 
-fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[],
-                          size_t nvr, fmi2Integer value[])
-{
-    (void)vr;
-    (void)value;
-    return refuse_type(c, nvr);
-}
+/* Both functions of a type; parameters that nothing reads have no names. */
+#define REFUSE_PAIR(TYPE)                                                      \
+    fmi2Status fmi2Get##TYPE(fmi2Component c, const fmi2ValueReference[],      \
+                             size_t count, fmi2##TYPE[])                       \
+    {                                                                          \
+        return refuse_type(c, count);                                          \
+    }                                                                          \
+    fmi2Status fmi2Set##TYPE(fmi2Component c, const fmi2ValueReference[],      \
+                             size_t count, const fmi2##TYPE[])                 \
+    {                                                                          \
+        return refuse_type(c, count);                                          \
+    }
 
-fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[],
-                          size_t nvr, fmi2Boolean value[])
-{
-    (void)vr;
-    (void)value;
-    return refuse_type(c, nvr);
-}
-
-fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference vr[],
-                         size_t nvr, fmi2String value[])
-{
-    (void)vr;
-    (void)value;
-    return refuse_type(c, nvr);
-}
-
-fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[],
-                          size_t nvr, const fmi2Integer value[])
-{
-    (void)vr;
-    (void)value;
-    return refuse_type(c, nvr);
-}
-
-fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[],
-                          size_t nvr, const fmi2Boolean value[])
-{
-    (void)vr;
-    (void)value;
-    return refuse_type(c, nvr);
-}
-
-fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference vr[],
-                         size_t nvr, const fmi2String value[])
-{
-    (void)vr;
-    (void)value;
-    return refuse_type(c, nvr);
-}
+REFUSE_PAIR(Integer)
+REFUSE_PAIR(Boolean)
+REFUSE_PAIR(String)
 
 /* ---- states that an importer keeps --------------------------------------- */
 
@@ -231,19 +204,18 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c,
 
 fmi2Status fmi2EnterEventMode(fmi2Component c)
 {
-    return change_mode(c, FMU_RUNNING, FMU_RUNNING, "fmi2EnterEventMode");
+    return settle(fmu_expect_exchange(c, "fmi2EnterEventMode"));
 }
 
 fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *fmi2eventInfo)
 {
     *fmi2eventInfo = (fmi2EventInfo){0};
-    return change_mode(c, FMU_RUNNING, FMU_RUNNING, "fmi2NewDiscreteStates");
+    return settle(fmu_expect_exchange(c, "fmi2NewDiscreteStates"));
 }
 
 fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c)
 {
-    return change_mode(c, FMU_RUNNING, FMU_RUNNING,
-                       "fmi2EnterContinuousTimeMode");
+    return settle(fmu_expect_exchange(c, "fmi2EnterContinuousTimeMode"));
 }
 
 fmi2Status fmi2CompletedIntegratorStep(
@@ -253,19 +225,22 @@ fmi2Status fmi2CompletedIntegratorStep(
     (void)noSetFMUStatePriorToCurrentPoint;
     *enterEventMode = fmi2False;
     *terminateSimulation = fmi2False;
-    return change_mode(c, FMU_RUNNING, FMU_RUNNING,
-                       "fmi2CompletedIntegratorStep");
+    return settle(fmu_expect_exchange(c, "fmi2CompletedIntegratorStep"));
 }
 
 fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time)
 {
-    return settle(c ? fmu_set_time(c, time) : FMU_ERROR);
+    if (fmu_expect_exchange(c, "fmi2SetTime") != FMU_OK)
+        return fmi2Error;
+    return settle(fmu_set_time(c, time));
 }
 
 fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[],
                                    size_t nx)
 {
-    return settle(c ? fmu_set_states(c, x, nx) : FMU_ERROR);
+    if (fmu_expect_exchange(c, "fmi2SetContinuousStates") != FMU_OK)
+        return fmi2Error;
+    return settle(fmu_set_states(c, x, nx));
 }
 
 fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real derivatives[],

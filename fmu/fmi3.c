@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: 0BSD */
-/* The functions of FMI 3.0 [FmiThree2024], by those of instance.h. */
+/* The functions of FMI 3.0 [FmiThree2024]. Each calls one of instance.h. */
 #include "instance.h"
 
 #include "fmi/fmi3Functions.h"
@@ -18,7 +18,6 @@ static fmi3Status settle(fmu_status status)
     return (fmi3Status)status;
 }
 
-/* Refuse a call that is about something which this model does not have. */
 static fmi3Status refuse(const fmu_instance *s, const char *sentence)
 {
     return s ? settle(fmu_complain(s, "%s", sentence)) : fmi3Error;
@@ -351,8 +350,7 @@ fmi3Status fmi3GetEventIndicators(fmi3Instance instance,
 
 fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance instance)
 {
-    return change_mode(instance, FMU_RUNNING, FMU_RUNNING,
-                       "fmi3EnterContinuousTimeMode");
+    return settle(fmu_expect_exchange(instance, "fmi3EnterContinuousTimeMode"));
 }
 
 fmi3Status fmi3CompletedIntegratorStep(
@@ -362,22 +360,24 @@ fmi3Status fmi3CompletedIntegratorStep(
     (void)noSetFMUStatePriorToCurrentPoint;
     *enterEventMode = false;
     *terminateSimulation = false;
-    return change_mode(instance, FMU_RUNNING, FMU_RUNNING,
-                       "fmi3CompletedIntegratorStep");
+    return settle(fmu_expect_exchange(instance, "fmi3CompletedIntegratorStep"));
 }
 
 fmi3Status fmi3SetTime(fmi3Instance instance, fmi3Float64 time)
 {
-    return settle(instance ? fmu_set_time(instance, time) : FMU_ERROR);
+    if (fmu_expect_exchange(instance, "fmi3SetTime") != FMU_OK)
+        return fmi3Error;
+    return settle(fmu_set_time(instance, time));
 }
 
 fmi3Status fmi3SetContinuousStates(fmi3Instance instance,
                                    const fmi3Float64 continuousStates[],
                                    size_t nContinuousStates)
 {
+    if (fmu_expect_exchange(instance, "fmi3SetContinuousStates") != FMU_OK)
+        return fmi3Error;
     return settle(
-        instance ? fmu_set_states(instance, continuousStates, nContinuousStates)
-                 : FMU_ERROR);
+        fmu_set_states(instance, continuousStates, nContinuousStates));
 }
 
 fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance instance,

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <strings.h>
 
-/* Log a sentence of an instance that may not be there. */
+/* Log a sentence before there is an instance, or of one. */
 static void log_text(const fmu_callback *to, const char *name, const char *text)
 {
     if (to->callback)
@@ -48,6 +48,19 @@ fmu_status fmu_change_mode(fmu_instance *instance, fmu_mode from, fmu_mode to,
     return FMU_OK;
 }
 
+fmu_status fmu_expect_exchange(const fmu_instance *instance,
+                               const char *function)
+{
+    if (!instance)
+        return FMU_ERROR;
+    if (instance->steps_itself)
+        return fmu_complain(instance,
+                            "%s is for model exchange, and the instance is for "
+                            "co-simulation",
+                            function);
+    return fmu_expect(instance, FMU_RUNNING, function);
+}
+
 /* ---- a new instance ----------------------------------------------------- */
 
 static int hex_digit(char c)
@@ -76,8 +89,9 @@ static const char *skip_scheme(const char *uri)
     return uri;
 }
 
-/* FOLDER/ritz.bin; NULL: no memory. The code %00 stays as it is, as it would end
- * the path and have another file read. */
+/* FOLDER/ritz.bin; NULL: no memory. Codes such as %20 in a URI are decoded. The
+ * code %00 is not: it would end the path early, and another file would be
+ * read. */
 static char *path_of_model(const char *resources, bool is_uri)
 {
     static const char file[] = "/ritz.bin";
@@ -100,8 +114,8 @@ static char *path_of_model(const char *resources, bool is_uri)
     return path;
 }
 
-/* Read the numbers; those of another token belong to another modelDescription,
- * and are refused. */
+/* Read the numbers of the model. If their token is not that of the request,
+ * they belong to another modelDescription.xml and are refused. */
 static bool read_model(const fmu_request *request, fmu_model *model,
                        char why[FMU_MESSAGE_SIZE])
 {
@@ -126,7 +140,7 @@ static bool read_model(const fmu_request *request, fmu_model *model,
 
 static bool make_room(const char *name, fmu_instance *s)
 {
-    const size_t n = s->model.num_states + 1; /* none is no failure */
+    const size_t n = s->model.num_states + 1; /* calloc(0) may return NULL */
 
     s->x = calloc(n, sizeof *s->x);
     s->work = calloc(n, sizeof *s->work);
@@ -193,7 +207,8 @@ typedef enum fmu_kind {
     FMU_NOTHING,
 } fmu_kind;
 
-/* What a value reference means, and its number among its kind. */
+/* The kind of variable that a value reference names, and its number, from 0,
+ * among the variables of that kind. */
 static fmu_kind find_reference(const fmu_model *m, size_t reference,
                                size_t *number)
 {
@@ -262,7 +277,8 @@ fmu_status fmu_get(const fmu_instance *instance, const unsigned *reference,
     return FMU_OK;
 }
 
-/* Where a value goes; NULL, and a sentence, if it may not be set now. */
+/* Where the value of a variable is stored; NULL, with a sentence, if the
+ * variable cannot be set, or not in the present mode. */
 static double *find_target(const fmu_instance *s, unsigned reference)
 {
     const bool early =
@@ -309,7 +325,7 @@ static fmu_status check_count(const fmu_instance *s, size_t count)
                         count);
 }
 
-/* As memcpy, which must not be given NULL even if count is 0. */
+/* For memcpy, which must not get NULL even if it copies nothing. */
 static void copy(double *to, const double *from, size_t count)
 {
     for (size_t k = 0; k < count; k++)
@@ -378,7 +394,8 @@ fmu_status fmu_do_step(fmu_instance *instance, double from, double h)
 
 /* ---- derivatives -------------------------------------------------------- */
 
-/* d unknown / d known; NAN: one of them is neither. */
+/* d unknown / d known, an entry of A, B, C or D; NAN if @p unknown is neither
+ * an output nor a derivative, or @p known neither an input nor a state. */
 static double partial(const fmu_model *m, unsigned unknown, unsigned known)
 {
     size_t i = 0, j = 0;

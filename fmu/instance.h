@@ -74,6 +74,10 @@ fmu_status fmu_complain(const fmu_instance *instance, const char *format, ...)
 fmu_status fmu_expect(const fmu_instance *instance, fmu_mode mode,
                       const char *function);
 
+/** FMU_ERROR unless the instance is running and for model exchange. */
+fmu_status fmu_expect_exchange(const fmu_instance *instance,
+                               const char *function);
+
 /** Go from one mode to another; FMU_ERROR if the instance is NULL or not in
  * mode @p from. */
 fmu_status fmu_change_mode(fmu_instance *instance, fmu_mode from, fmu_mode to,

@@ -48,19 +48,24 @@ static fmu_status check(const fmu_instance *s, const unsigned char *bytes,
     return FMU_OK;
 }
 
-/* Room for a state, which an importer may have already. */
-static fmu_status make_room(const fmu_instance *s, void **state)
+/* The bytes of a state, new ones if *state is NULL; NULL: no memory. */
+static unsigned char *make_room(const fmu_instance *s, void **state)
 {
     if (!*state)
         *state = malloc(size_of(s));
-    return *state ? FMU_OK : fmu_complain(s, "there is no memory for a state");
+    if (!*state)
+        (void)fmu_complain(s, "there is no memory for a state");
+    return *state;
 }
 
 fmu_status fmu_state_get(const fmu_instance *instance, void **state)
 {
-    if (!instance || !state || make_room(instance, state) != FMU_OK)
+    unsigned char *bytes =
+        instance && state ? make_room(instance, state) : NULL;
+
+    if (!bytes)
         return FMU_ERROR;
-    save(instance, *state);
+    save(instance, bytes);
     return FMU_OK;
 }
 
@@ -120,9 +125,13 @@ fmu_status fmu_state_deserialize(const fmu_instance *instance,
                                  const unsigned char *bytes, size_t size,
                                  void **state)
 {
-    if (!instance || !state || check(instance, bytes, size) != FMU_OK ||
-        make_room(instance, state) != FMU_OK)
+    unsigned char *to = NULL;
+
+    if (!instance || !state || check(instance, bytes, size) != FMU_OK)
         return FMU_ERROR;
-    memcpy(*state, bytes, size);
+    to = make_room(instance, state);
+    if (!to)
+        return FMU_ERROR;
+    memcpy(to, bytes, size);
     return FMU_OK;
 }

@@ -461,6 +461,38 @@ static void calls_that_make_no_sense_are_refused(void **state)
     }
 }
 
+/* Functions of one kind of instance are refused by the other, and all of them
+   before the simulation begins. */
+static void functions_of_another_kind_or_mode_are_refused(void **state)
+{
+    fmi2SetTimeTYPE *set_time = NULL; /* the same in both versions */
+    fmi2SetupExperimentTYPE *setup = NULL;
+    fmu_driver d;
+
+    (void)state;
+    write_oscillator(4.0, 0.0, 1.0);
+    fmu_find("fmi2SetupExperiment", (void *)&setup);
+    for (int fmi = 2; fmi <= 3; fmi++) {
+        fmu_find(fmi == 2 ? "fmi2SetTime" : "fmi3SetTime", (void *)&set_time);
+        open_here(fmi, true, &d);
+        assert_int_equal(fmu_start(&d, 0.0), FMI_OK);
+        assert_int_equal(set_time(d.instance, 1.0), FMI_ERROR);
+        assert_non_null(strstr(d.said, "SetTime is for model exchange, and the "
+                                       "instance is for co-simulation"));
+        fmu_close(&d);
+        open_here(fmi, false, &d);
+        assert_int_equal(set_time(d.instance, 1.0), FMI_ERROR);
+        assert_non_null(
+            strstr(d.said, "is instantiated, it should be running"));
+        assert_int_equal(fmu_start(&d, 0.0), FMI_OK);
+        assert_int_equal(set_time(d.instance, 1.0), FMI_OK);
+        if (fmi == 2)
+            assert_int_equal(setup(d.instance, 0, 0.0, 0.0, 0, 0.0), FMI_ERROR);
+        assert_near(fmu_value(&d, 0), 1.0, 0.0);
+        fmu_close(&d);
+    }
+}
+
 static void a_motion_beyond_all_bounds_ends_the_step(void **state)
 {
     fmu_driver d;
@@ -662,6 +694,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(derivatives_are_those_of_the_equation),
     cmocka_unit_test(partial_derivatives_are_the_matrices),
     cmocka_unit_test(calls_that_make_no_sense_are_refused),
+    cmocka_unit_test(functions_of_another_kind_or_mode_are_refused),
     cmocka_unit_test(a_motion_beyond_all_bounds_ends_the_step),
     cmocka_unit_test(other_variables_than_reals_are_refused),
     cmocka_unit_test(resources_of_another_token_are_refused),
