@@ -190,7 +190,8 @@ static double frequency_of(const ritz_motion *m, const double _Complex *pole,
     return pole ? cabs(pole[k]) : sqrt(fabs(m->lambda[k]));
 }
 
-/* Lowest and highest circular frequency, 1 where there is none. */
+/* Lowest and highest circular frequency; both 1 if there is none. A pole that
+   overflows has none. */
 static ritz_status find_range(const ritz_export_object *object,
                               const ritz_motion *m, double range[2])
 {
@@ -201,12 +202,16 @@ static ritz_status find_range(const ritz_export_object *object,
         RITZ_CHECK(ritz_state_space_poles(object->states, &count, &pole));
     range[0] = (double)INFINITY;
     range[1] = 0.0;
-    for (int64_t k = 0; k < count; k++)
-        range[1] = fmax(range[1], frequency_of(m, pole, k));
     for (int64_t k = 0; k < count; k++) {
         const double w = frequency_of(m, pole, k);
 
-        if (w > RITZ_HALF_DIGITS * range[1])
+        if (isfinite(w))
+            range[1] = fmax(range[1], w);
+    }
+    for (int64_t k = 0; k < count; k++) {
+        const double w = frequency_of(m, pole, k);
+
+        if (isfinite(w) && w > RITZ_HALF_DIGITS * range[1])
             range[0] = fmin(range[0], w);
     }
     if (range[1] == 0.0)

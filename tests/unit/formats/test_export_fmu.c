@@ -259,6 +259,25 @@ static void nominal_values_stay_above_zero(void **state)
     fmu_close(&d);
 }
 
+/* The largest double on the diagonal of A and a number below it: their sum, a
+   pole, is infinite. The model has no frequency to be scaled by. */
+static void a_pole_beyond_all_doubles_ends_no_search(void **state)
+{
+    RITZ_OWN(ritz_reduced) reduced = {0};
+    RITZ_OWN(ritz_state_space) states = {0};
+    RITZ_OWN(ritz_export_report) report = {0};
+    const ritz_export_object object = {.states = &states};
+    const ritz_export_request request = {.output = folder_path("huge.fmu"),
+                                         .runtime = fmu_runtime()};
+
+    (void)state;
+    make_masses(NULL, false, &reduced);
+    assert_ok(ritz_states_of_reduced(&reduced, NULL, &states));
+    for (int64_t k = 0; k < states.A.nrow * states.A.ncol; k++)
+        states.A.val[k] = DBL_MAX;
+    assert_ok(ritz_exporter_fmu.write(&object, &request, &report));
+}
+
 /* ---- text --------------------------------------------------------------- */
 
 static void the_archive_holds_what_the_standard_wants(void **state)
@@ -534,6 +553,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(held_inputs_move_it_as_ritz_simulate_does),
     cmocka_unit_test(a_state_space_moves_as_ritz_simulate_does),
     cmocka_unit_test(nominal_values_stay_above_zero),
+    cmocka_unit_test(a_pole_beyond_all_doubles_ends_no_search),
     cmocka_unit_test(the_archive_holds_what_the_standard_wants),
     cmocka_unit_test(the_same_model_is_the_same_bytes),
     cmocka_unit_test(dependencies_are_the_entries_that_are_not_zero),
