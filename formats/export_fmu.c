@@ -240,12 +240,14 @@ static ritz_status say_blocks(const ritz_fmu *fmu, ritz_export_report *report)
                                " uncoupled modes",
                                fmu->num_inputs, fmu->num_outputs,
                                fmu->num_states, fmu->num_blocks - dense));
-    if (dense > 0)
-        RITZ_CHECK(ritz_export_say(report,
-                                   "%" PRId64
-                                   " groups of coupled states, the largest "
-                                   "of %" PRId64,
-                                   dense, largest));
+    if (dense == 1)
+        return ritz_export_say(
+            report, "one group of %" PRId64 " coupled states", largest);
+    if (dense > 1)
+        return ritz_export_say(report,
+                               "%" PRId64 " groups of coupled states, the "
+                               "largest of %" PRId64,
+                               dense, largest);
     return RITZ_OK;
 }
 
