@@ -19,9 +19,14 @@
 /* Neither a handler nor an observer has an argument: state is kept here. */
 static volatile sig_atomic_t shown; /* a line of progress is on the screen */
 static double last;                 /* when it was written, by cli_clock */
+static const char *last_of;         /* the step that it names */
+static double credit;               /* lines that may be written at once */
+static double counted;              /* when it was counted */
 static cli_run *watched;            /* the run whose steps are observed */
 static bool on_terminal;            /* progress is shown */
 static bool passed_on;              /* by another program, to a terminal */
+
+enum { LINES_PER_SECOND = 10 };
 
 static const char erase[] = "\r\033[K";
 
@@ -261,8 +266,26 @@ static void foresee_end(step_series *w)
              w->total, cli_duration(whole, text));
 }
 
-/* "candidates: 12 of 59, about 3.2 s left": at most ten times a second, and not
-   before a tenth has passed. @param[in] w  NULL: the total is not known */
+/* Whether a line for a step is written now. A step that goes on is written ten
+   times a second. One of another name is written at once, as it may take long,
+   but where short steps alternate only ten of them in a second. */
+static bool is_due(const char *what, double now)
+{
+    const bool begins = what != last_of;
+
+    credit =
+        fmin(LINES_PER_SECOND, credit + LINES_PER_SECOND * (now - counted));
+    counted = now;
+    if (begins ? credit < 1.0 : (now - last) * LINES_PER_SECOND < 1.0)
+        return false;
+    credit = fmax(0.0, credit - 1.0);
+    last = now;
+    last_of = what;
+    return true;
+}
+
+/* "candidates: 12 of 59, about 3.2 s left". @param[in] w  NULL: the total is not
+   known */
 static void show_progress(const char *what, int64_t done, const step_series *w)
 {
     char line[80], text[CLI_DURATION];
@@ -270,9 +293,8 @@ static void show_progress(const char *what, int64_t done, const step_series *w)
     const double whole = w ? foresee_whole(w) : 0.0;
     int length = 0;
 
-    if (now - last < 0.1)
+    if (!is_due(what, now))
         return;
-    last = now;
     if (w && whole > 0.0)
         length = snprintf(
             line, sizeof line, "%s: %" PRId64 " of %" PRId64 ", about %s left",
@@ -374,7 +396,8 @@ void cli_watch(cli_run *run)
     atexit(end_early);
     on_terminal = !run->quiet && (passed_on || isatty(STDERR_FILENO));
     watch_signals();
-    last = phase_began = cli_clock();
+    last = counted = phase_began = cli_clock();
+    credit = LINES_PER_SECOND;
     phases[num_phases++] = (phase){"start", 0.0};
     ritz_monitor_observe(follow_step);
 }
