@@ -6,6 +6,7 @@
 #include <ritz/base.h>
 #include <ritz/basis.h>
 #include <ritz/check.h>
+#include <ritz/component.h>
 #include <ritz/container.h>
 #include <ritz/export.h>
 #include <ritz/fit.h>
@@ -16,9 +17,13 @@
 #include <ritz/poles.h>
 #include <ritz/ranking.h>
 #include <ritz/recover.h>
+#include <ritz/reduced.h>
 #include <ritz/response.h>
 #include <ritz/scene.h>
 #include <ritz/simulate.h>
+#include <ritz/state_space.h>
+#include <ritz/subspace.h>
+#include <ritz/system.h>
 #include <ritz/tuning.h>
 #include <ritz/verify.h>
 
