@@ -9,11 +9,12 @@
  *                                             SHAPE NODES - ELEMENT NODE ...
  *     N,R5.3,LOC,-1,                          -1
  *
- * The first field of a block's end is -1. EBLOCK without SOLID has the fields
- * ELEMENT TYPE REAL MAT ESYS NODE ..., and TYPE,N before it tells the type.
+ * A line whose first field is -1 ends a block. EBLOCK without SOLID has the
+ * fields ELEMENT TYPE REAL MAT ESYS NODE ..., and the command TYPE,N before it
+ * states the element type.
  *
- * Macros are not evaluated: commands that would make other nodes or elements of
- * those that are there are refused by name. All others are passed over.
+ * Macros are not evaluated: commands that generate or change nodes or elements
+ * are refused by name. Commands that are not known are ignored.
  */
 #include "formats/cdb.h"
 #include "base/alloc.h"
@@ -23,19 +24,20 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 enum {
     MOST_FIELDS = 32,   /* of a command, and of a line of a block */
-    MOST_TYPES = 10000, /* numbers of element types */
+    MOST_TYPES = 10000, /* element types in a file */
     MOST_NODES = 64,    /* of an element */
-    SOLID_FIELDS = 11,  /* in front of the nodes of an element */
-    PLAIN_FIELDS = 5,   /* the same of EBLOCK without SOLID */
-    MOST_DIGITS = 60,   /* of a field */
+    SOLID_FIELDS = 11,  /* before the nodes of an element, EBLOCK,,SOLID */
+    PLAIN_FIELDS = 5,   /* before the nodes of an element, other EBLOCK */
+    MOST_DIGITS = 60,   /* width of a field */
 };
 
 /* ---- lines --------------------------------------------------------------- */
 
-/* The next line without blanks around it; false at the end. */
+/* Read the next line, without its line end; false at the end of the file. */
 static bool take_line(ritz_cdb *all, ritz_piece *out, int64_t *number)
 {
     const ritz_deck_text *top = NULL;
@@ -52,17 +54,11 @@ static bool take_line(ritz_cdb *all, ritz_piece *out, int64_t *number)
 
 static bool is_word(ritz_piece piece, const char *word)
 {
-    const int64_t length = (int64_t)strlen(word);
-
-    if (piece.length != length)
-        return false;
-    for (int64_t k = 0; k < length; k++)
-        if (ritz_card_upper(piece.text[k]) != word[k])
-            return false;
-    return true;
+    return piece.length == (int64_t)strlen(word) &&
+           strncasecmp(piece.text, word, (size_t)piece.length) == 0;
 }
 
-static bool is_whole(ritz_piece piece, int64_t *out)
+static bool read_whole(ritz_piece piece, int64_t *out)
 {
     const char *at = piece.text;
     const char *end = piece.text + piece.length;
@@ -75,8 +71,8 @@ static bool is_whole(ritz_piece piece, int64_t *out)
     return true;
 }
 
-/* A number; 0 if there is none. */
-static bool is_real(ritz_piece piece, double *out)
+/* An empty piece is read as 0. */
+static bool read_real(ritz_piece piece, double *out)
 {
     ritz_decimal value = {0};
     const char *at = piece.text;
@@ -88,14 +84,13 @@ static bool is_real(ritz_piece piece, double *out)
     return at == piece.text + piece.length && isfinite(value.value);
 }
 
-/* A command, taken apart at its commas. */
+/* The fields of a command, which commas separate. */
 typedef struct cdb_command {
     int64_t count, line;
     ritz_piece field[MOST_FIELDS]; /* without blanks; the first is its name */
 } cdb_command;
 
-/* What stands behind '!' is a comment; fields beyond the last that there is
-   room for are left out. */
+/* Text after '!' is a comment. Fields beyond MOST_FIELDS are ignored. */
 static void split_command(ritz_piece text, int64_t line, cdb_command *out)
 {
     const char *stop = memchr(text.text, '!', (size_t)text.length);
@@ -119,7 +114,7 @@ static ritz_piece field_of(const cdb_command *command, int64_t k)
     return k < command->count ? command->field[k] : (ritz_piece){"", 0};
 }
 
-/* Of a piece in sentences: its length, at most 40, and its text. */
+/* Arguments of %.*s that print at most 40 letters of a piece. */
 #define QUOTED(piece)                                                          \
     (int)((piece).length < 40 ? (piece).length : 40), (piece).text
 
@@ -128,7 +123,7 @@ static ritz_status take_whole(const ritz_cdb *all, const cdb_command *command,
 {
     const ritz_piece field = field_of(command, k);
 
-    if (!is_whole(field, out))
+    if (!read_whole(field, out))
         return ritz_cdb_refuse(all, command->line,
                                "'%.*s' of '%.*s' is not a whole number",
                                QUOTED(field), QUOTED(command->field[0]));
@@ -140,7 +135,7 @@ static ritz_status take_real(const ritz_cdb *all, const cdb_command *command,
 {
     const ritz_piece field = field_of(command, k);
 
-    if (!is_real(field, out))
+    if (!read_real(field, out))
         return ritz_cdb_refuse(all, command->line,
                                "'%.*s' of '%.*s' is not a number",
                                QUOTED(field), QUOTED(command->field[0]));
@@ -149,15 +144,17 @@ static ritz_status take_real(const ritz_cdb *all, const cdb_command *command,
 
 /* ---- blocks -------------------------------------------------------------- */
 
-/* "(3i9,6e21.13e3)": fields of whole numbers, then of real ones. */
+/* A format of Fortran such as "(3i9,6e21.13e3)": a number of fields with whole
+   numbers, then a number of fields with real ones, and the widths of both. */
 typedef struct cdb_form {
     int64_t wholes, whole_width, reals, real_width;
 } cdb_form;
 
-/* "3i9" or "6e21.13e3", which `at` is moved behind. */
+/* Read a group such as "3i9" or "6e21.13e3", and move `at` to its end. */
 static bool scan_group(const char **at, const char *end, const char *letters,
                        int64_t *count, int64_t *width)
 {
+    static const char marks[] = ".E"; /* of decimals, of digits of exponents */
     int64_t unused = 0;
 
     *count = 1;
@@ -169,14 +166,11 @@ static bool scan_group(const char **at, const char *end, const char *letters,
     if (!ritz_decimal_scan_whole(at, end, width) || *count < 1 || *width < 1 ||
         *count > MOST_FIELDS || *width > MOST_DIGITS)
         return false;
-    if (*at < end && **at == '.') {
-        ++*at;
-        (void)ritz_decimal_scan_whole(at, end, &unused);
-    }
-    if (*at < end && ritz_card_upper(**at) == 'E') {
-        ++*at;
-        (void)ritz_decimal_scan_whole(at, end, &unused);
-    }
+    for (const char *mark = marks; *mark; mark++)
+        if (*at < end && ritz_card_upper(**at) == *mark) {
+            ++*at;
+            (void)ritz_decimal_scan_whole(at, end, &unused);
+        }
     return true;
 }
 
@@ -196,7 +190,7 @@ static bool scan_form(ritz_piece line, cdb_form *out)
     return end - at == 1 && *at == ')';
 }
 
-/* The format of a block, which the line behind its command has. */
+/* Read the format of a block from the line after its command. */
 static ritz_status take_form(ritz_cdb *all, const cdb_command *command,
                              bool reals, cdb_form *out)
 {
@@ -214,7 +208,7 @@ static ritz_status take_form(ritz_cdb *all, const cdb_command *command,
     return RITZ_OK;
 }
 
-/* Field k of a line, empty beyond its end. */
+/* The field from column `from` on, empty if the line ends before it. */
 static ritz_piece cut_field(ritz_piece line, int64_t from, int64_t width)
 {
     const int64_t at = from < line.length ? from : line.length;
@@ -224,7 +218,7 @@ static ritz_piece cut_field(ritz_piece line, int64_t from, int64_t width)
         (ritz_piece){line.text + at, rest < width ? rest : width});
 }
 
-/* Whether a line ends a block: -1, or a command N or EN, which has the -1. */
+/* A block ends with a line -1, or with a command N or EN whose number is -1. */
 static bool ends_block(ritz_piece line)
 {
     const ritz_piece text = ritz_piece_trim(line);
@@ -237,7 +231,8 @@ static bool ends_block(ritz_piece line)
            is_word(command.field[0], "EN");
 }
 
-/* The whole numbers of a line; *count: up to the last that is there. */
+/* Read the whole numbers of a line, blank ones as 0. *count is the number of
+   fields up to the last that is not blank. */
 static ritz_status take_wholes(const ritz_cdb *all, const cdb_form *form,
                                ritz_piece line, int64_t number, int64_t *out,
                                int64_t *count)
@@ -250,7 +245,7 @@ static ritz_status take_wholes(const ritz_cdb *all, const cdb_form *form,
         out[k] = 0;
         if (field.length == 0)
             continue;
-        if (!is_whole(field, &out[k]))
+        if (!read_whole(field, &out[k]))
             return ritz_cdb_refuse(all, number, "'%.*s' is not a whole number",
                                    QUOTED(field));
         *count = k + 1;
@@ -270,16 +265,17 @@ static ritz_status add_node(ritz_cdb *all, const ritz_cdb_node *node)
     return RITZ_OK;
 }
 
-/* A coordinate or angle of a node. */
-static ritz_status take_place(const ritz_cdb *all, const cdb_form *form,
-                              ritz_piece line, int64_t k, ritz_cdb_node *node)
+/* Read coordinate k (0 to 2) or angle k - 3 of a node. */
+static ritz_status take_real_field(const ritz_cdb *all, const cdb_form *form,
+                                   ritz_piece line, int64_t k,
+                                   ritz_cdb_node *node)
 {
     const ritz_piece field =
         cut_field(line, form->wholes * form->whole_width + k * form->real_width,
                   form->real_width);
     double *to = k < 3 ? &node->x[k] : &node->angle[k - 3];
 
-    if (!is_real(field, to))
+    if (!read_real(field, to))
         return ritz_cdb_refuse(all, node->line, "'%.*s' is not a number",
                                QUOTED(field));
     return RITZ_OK;
@@ -287,7 +283,7 @@ static ritz_status take_place(const ritz_cdb *all, const cdb_form *form,
 
 static ritz_status take_nodes(ritz_cdb *all, const cdb_command *command)
 {
-    enum { PLACES = 6 };
+    enum { REALS = 6 }; /* X Y Z THXY THYZ THZX */
     cdb_form form = {0};
     ritz_piece line = {"", 0};
     ritz_cdb_node node = {0};
@@ -299,14 +295,16 @@ static ritz_status take_nodes(ritz_cdb *all, const cdb_command *command)
             return RITZ_OK;
         RITZ_CHECK(take_wholes(all, &form, line, node.line, whole, &count));
         node.id = whole[0];
-        for (int64_t k = 0; k < form.reals && k < PLACES; k++)
-            RITZ_CHECK(take_place(all, &form, line, k, &node));
+        for (int64_t k = 0; k < form.reals && k < REALS; k++)
+            RITZ_CHECK(take_real_field(all, &form, line, k, &node));
         RITZ_CHECK(add_node(all, &node));
     }
     return ritz_cdb_refuse(all, command->line, "'NBLOCK' has no end");
 }
 
-/* N,R5.3,LOC,NODE,X,Y,Z and N,R5.3,ANG,NODE,..., or N,NODE,X,Y,Z,THXY,.... */
+/* N has one of the forms
+   N,R5.3,LOC,NODE,X,Y,Z   N,R5.3,ANG,NODE,THXY,THYZ,THZX   N,NODE,X,Y,Z,THXY,..
+ */
 static ritz_status take_node(ritz_cdb *all, const cdb_command *command)
 {
     const ritz_piece form = field_of(command, 1);
@@ -365,15 +363,16 @@ static ritz_status take_type(ritz_cdb *all, const cdb_command *command)
     return RITZ_OK;
 }
 
-/* KEYOPT,TYPE,3,VALUE says which directions the nodes of some elements have. */
+/* KEYOPT,TYPE,3,VALUE chooses the directions that nodes of some elements have.
+   Other options are ignored. */
 static ritz_status take_option(ritz_cdb *all, const cdb_command *command)
 {
     int64_t number = 0, which = 0, value = 0;
     ritz_cdb_type *type = NULL;
 
-    if (!is_whole(field_of(command, 1), &number) ||
-        !is_whole(field_of(command, 2), &which) || which != 3 ||
-        !is_whole(field_of(command, 3), &value))
+    if (!read_whole(field_of(command, 1), &number) ||
+        !read_whole(field_of(command, 2), &which) || which != 3 ||
+        !read_whole(field_of(command, 3), &value))
         return RITZ_OK;
     type = ritz_cdb_find_type(all, number);
     if (type)
@@ -397,8 +396,7 @@ static ritz_status add_joined(ritz_cdb *all, int64_t node)
     return RITZ_OK;
 }
 
-/* Add an element, whose first nodes are the numbers of `whole` from `from` to
-   `to`. */
+/* Add an element whose first nodes are whole[from] to whole[to - 1]. */
 static ritz_status begin_element(ritz_cdb *all, int64_t type, int64_t line,
                                  const int64_t *whole, int64_t from, int64_t to)
 {
@@ -415,7 +413,7 @@ static ritz_status begin_element(ritz_cdb *all, int64_t type, int64_t line,
     return RITZ_OK;
 }
 
-/* Add the other `due` nodes of the last element, from the lines that follow. */
+/* Read the `due` nodes that the last element still lacks from the next lines. */
 static ritz_status continue_element(ritz_cdb *all, const cdb_form *form,
                                     int64_t due)
 {
@@ -474,14 +472,14 @@ static ritz_status take_elements(ritz_cdb *all, const cdb_command *command)
     return ritz_cdb_refuse(all, command->line, "'EBLOCK' has no end");
 }
 
-/* EN and E make elements that are not read, and are counted. EN,R5.5,ATTR,-1
-   behind a block makes none. */
+/* EN and E define single elements. These are counted, but not read.
+   EN,R5.5,ATTR,-1 ends a block and defines none. */
 static ritz_status count_element(ritz_cdb *all, const cdb_command *command)
 {
     const bool attributes = is_word(field_of(command, 2), "ATTR");
     int64_t nodes = 0;
 
-    if (attributes && is_whole(field_of(command, 3), &nodes) && nodes == -1)
+    if (attributes && read_whole(field_of(command, 3), &nodes) && nodes == -1)
         return RITZ_OK;
     all->num_strange += attributes || is_word(command->field[0], "E");
     return RITZ_OK;
@@ -489,7 +487,7 @@ static ritz_status count_element(ritz_cdb *all, const cdb_command *command)
 
 /* ---- supports and constraints -------------------------------------------- */
 
-/* The direction that a label names, as a bit; 0: it names none. */
+/* The bits of the directions that a label names; 0 if it names none. */
 static uint8_t mask_of(ritz_piece label)
 {
     static const char *const names[] = {"UX",   "UY",   "UZ",
@@ -501,7 +499,7 @@ static uint8_t mask_of(ritz_piece label)
     return is_word(label, "ALL") ? 0x7e : 0;
 }
 
-/* D,NODE,LABEL,VALUE,VALUE2,LAST,STEP,LABEL,...: also of all nodes. */
+/* D,NODE,LABEL,VALUE,VALUE2,LAST,STEP,LABEL,..., where NODE may be ALL. */
 static ritz_status take_support(ritz_cdb *all, const cdb_command *command)
 {
     enum { VALUE = 3, LAST = 5, LABELS = 7, MOST_LABELS = 5 };
@@ -521,7 +519,7 @@ static ritz_status take_support(ritz_cdb *all, const cdb_command *command)
     if (!everywhere)
         RITZ_CHECK(take_whole(all, command, 1, &support.node));
     support.imposed =
-        !is_real(field_of(command, VALUE), &value) || value != 0.0;
+        !read_real(field_of(command, VALUE), &value) || value != 0.0;
     RITZ_CHECK_ROOM(all->support, all->num_supports, all->supports_room);
     all->support[all->num_supports++] = support;
     return RITZ_OK;
@@ -540,23 +538,18 @@ static ritz_status take_tie(ritz_cdb *all, const cdb_command *command)
 
 /* ---- commands ------------------------------------------------------------ */
 
+/* CSYS,N activates coordinate system N, of which 0 is the global one. LOCAL,
+   CLOCAL, CS and CSKP activate the system that they define. */
 static ritz_status take_system(ritz_cdb *all, const cdb_command *command)
 {
     int64_t number = 0;
 
-    all->turned = !is_whole(field_of(command, 1), &number) || number != 0;
+    all->turned = !is_word(command->field[0], "CSYS") ||
+                  !read_whole(field_of(command, 1), &number) || number != 0;
     return RITZ_OK;
 }
 
-/* LOCAL and the like make the system that they define the active one. */
-static ritz_status turn_system(ritz_cdb *all, const cdb_command *command)
-{
-    (void)command;
-    all->turned = true;
-    return RITZ_OK;
-}
-
-/* NSEL,ALL and ALLSEL choose all nodes, other commands some of them. */
+/* NSEL,ALL and ALLSEL select all nodes; the other commands select some. */
 static ritz_status choose_nodes(ritz_cdb *all, const cdb_command *command)
 {
     const ritz_piece what = field_of(command, 1);
@@ -567,24 +560,22 @@ static ritz_status choose_nodes(ritz_cdb *all, const cdb_command *command)
     return RITZ_OK;
 }
 
-static ritz_status open_condition(ritz_cdb *all, const cdb_command *command)
+/* *IF,...,THEN begins a condition and *ENDIF ends it. */
+static ritz_status take_condition(ritz_cdb *all, const cdb_command *command)
 {
-    all->conditions += is_word(command->field[command->count - 1], "THEN");
+    if (is_word(command->field[0], "*IF"))
+        all->conditions += is_word(command->field[command->count - 1], "THEN");
+    else
+        all->conditions -= all->conditions > 0;
     return RITZ_OK;
 }
 
-static ritz_status close_condition(ritz_cdb *all, const cdb_command *command)
-{
-    (void)command;
-    all->conditions -= all->conditions > 0;
-    return RITZ_OK;
-}
-
-/* A command, and what takes it. */
+/* The name of a command, and the function that reads it. */
 typedef struct cdb_verb {
     const char *name;
     ritz_status (*take)(ritz_cdb *all, const cdb_command *command);
-    bool adds; /* nodes, elements, supports or constraints */
+    bool adds; /* it adds nodes, elements, supports or constraints, which is
+                  refused within *IF */
 } cdb_verb;
 
 static const cdb_verb verbs[] = {
@@ -604,10 +595,10 @@ static const cdb_verb verbs[] = {
     {"RBE3", take_tie, true},
     {"CEINTF", take_tie, true},
     {"CSYS", take_system, false},
-    {"LOCAL", turn_system, false},
-    {"CLOCAL", turn_system, false},
-    {"CS", turn_system, false},
-    {"CSKP", turn_system, false},
+    {"LOCAL", take_system, false},
+    {"CLOCAL", take_system, false},
+    {"CS", take_system, false},
+    {"CSKP", take_system, false},
     {"NSEL", choose_nodes, false},
     {"CMSEL", choose_nodes, false},
     {"NSLE", choose_nodes, false},
@@ -615,12 +606,12 @@ static const cdb_verb verbs[] = {
     {"NSLL", choose_nodes, false},
     {"NSLK", choose_nodes, false},
     {"ALLSEL", choose_nodes, false},
-    {"*IF", open_condition, false},
-    {"*ENDIF", close_condition, false},
+    {"*IF", take_condition, false},
+    {"*ENDIF", take_condition, false},
 };
 
-/* Commands that are refused. */
-static const char *const strangers[] = {
+/* Commands that are refused, as they change the model or read other files. */
+static const char *const refused[] = {
     "NGEN",    "FILL",     "NDELE",  "EDELE",  "EMODIF", "DSYM",    "*DOWHILE",
     "*CREATE", "/EOF",     "EGEN",   "NROTAT", "NMODIF", "NSYM",    "ESYM",
     "NSCALE",  "TRANSFER", "NUMMRG", "NUMCMP", "*DO",    "*REPEAT", "*USE",
@@ -630,13 +621,13 @@ static ritz_status take_command(ritz_cdb *all, const cdb_command *command)
 {
     const ritz_piece name = command->field[0];
 
-    for (size_t k = 0; k < sizeof strangers / sizeof *strangers; k++)
-        if (is_word(name, strangers[k]))
+    for (size_t k = 0; k < sizeof refused / sizeof *refused; k++)
+        if (is_word(name, refused[k]))
             return ritz_cdb_refuse(all, command->line,
                                    "'%s' changes the model, and Ritz does not "
                                    "evaluate it: let ANSYS write the model by "
                                    "CDWRITE",
-                                   strangers[k]);
+                                   refused[k]);
     for (size_t k = 0; k < sizeof verbs / sizeof *verbs; k++) {
         if (!is_word(name, verbs[k].name))
             continue;
@@ -679,7 +670,7 @@ static ritz_status parse_cdb(const char *path, const char *bytes, int64_t size,
     return ritz_cdb_build(&all, out);
 }
 
-/* A line near the beginning is a command that only such files have. */
+/* One of the first lines is a command that only files of ANSYS have. */
 static bool is_cdb(const char *bytes, int64_t size)
 {
     static const char *const words[] = {"/PREP7", "/COM", "/BATCH", "NBLOCK",

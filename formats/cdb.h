@@ -1,5 +1,5 @@
-/* What the lines of a coded database of ANSYS say, before a deck is made of it:
- * private to the reader. */
+/* The contents of a coded database of ANSYS as cdb.c reads them; cdb_deck.c
+ * makes a deck of them. */
 #ifndef RITZ_FORMATS_CDB_H
 #define RITZ_FORMATS_CDB_H
 
@@ -8,7 +8,15 @@
 
 #include <ritz/import.h>
 
-enum { RITZ_CDB_MASS21 = 21 }; /* whose directions KEYOPT(3) tells */
+enum { RITZ_CDB_MASS21 = 21 }; /* KEYOPT(3) chooses its directions */
+
+/* Directions of a node: bit c is direction c. */
+enum {
+    RITZ_CDB_PLANE = 0x06,   /* UX UY */
+    RITZ_CDB_FRAME = 0x46,   /* UX UY ROTZ */
+    RITZ_CDB_SOLID = 0x0e,   /* UX UY UZ */
+    RITZ_CDB_ALL_SIX = 0x7e, /* and ROTX ROTY ROTZ */
+};
 
 typedef struct ritz_cdb_node {
     int64_t id, line;
@@ -16,45 +24,45 @@ typedef struct ritz_cdb_node {
     double angle[3]; /* THXY, THYZ, THZX, in degrees */
 } ritz_cdb_node;
 
-/* An element of the library, by its number. */
+/* An element of the library of ANSYS. */
 typedef struct ritz_cdb_kind {
     int64_t number; /* 185 of SOLID185 */
-    int64_t size;   /* nodes with dofs, which draw it; others may follow */
+    int64_t size;   /* nodes that have dofs and make the cell; orientation nodes
+                       may follow */
     ritz_cell cell; /* 0: it is not drawn */
-    uint8_t mask;   /* bit c: its nodes have direction c; 0: not known */
+    uint8_t mask;   /* directions of its nodes; 0: not known */
     bool ties;      /* it makes dofs depend on others */
 } ritz_cdb_kind;
 
-/* ET and KEYOPT of a number of element type. */
+/* An element type of the file: the commands ET and KEYOPT. */
 typedef struct ritz_cdb_type {
-    int64_t number;            /* by which elements refer to it */
-    const ritz_cdb_kind *kind; /* NULL: it is not known */
+    int64_t number;            /* elements refer to the type by it */
+    const ritz_cdb_kind *kind; /* NULL: not in the table of the library */
     int64_t option_3;          /* KEYOPT(3) */
 } ritz_cdb_type;
 
 typedef struct ritz_cdb_element {
     int64_t id;    /* 0: none */
-    int64_t type;  /* the number of its element type */
+    int64_t type;  /* number of its element type */
     int64_t first; /* its first node in `joined` */
     int64_t count; /* nodes, with those that are 0 */
     int64_t line;
 } ritz_cdb_element;
 
-/* D: a support. */
+/* A support: the command D. */
 typedef struct ritz_cdb_support {
     int64_t node; /* 0: all */
-    uint8_t mask; /* bit c: direction c */
-    bool imposed; /* the motion is not zero, or a table has it */
+    uint8_t mask; /* directions that it holds */
+    bool imposed; /* the motion is not zero, or a table gives it */
     int64_t line;
 } ritz_cdb_support;
 
-/* CE, CP and the like. */
+/* A constraint: CE, CP, CERIG, RBE3, CEINTF or an element that ties nodes. */
 typedef struct ritz_cdb_tie {
     char name[RITZ_NAME_SIZE];
     int64_t line;
 } ritz_cdb_tie;
 
-/* Everything that the lines say. */
 typedef struct ritz_cdb {
     ritz_deck_files files;
     ritz_deck_reading reading;
@@ -71,27 +79,28 @@ typedef struct ritz_cdb {
     int64_t num_ties, ties_room;
     ritz_cdb_tie *tie;
     int64_t num_strange; /* elements that are not read */
-    int64_t open_type;   /* set by TYPE, for EBLOCK without SOLID */
-    bool turned;         /* CSYS: N is not along global axes */
-    bool chosen;         /* NSEL: ALL is some of the nodes */
-    int64_t conditions;  /* *IF ... THEN that are open */
+    int64_t open_type;   /* the command TYPE; for EBLOCK without SOLID */
+    bool turned;         /* CSYS: coordinates of N are not global ones */
+    bool chosen;         /* NSEL: only some nodes are selected */
+    int64_t conditions;  /* nested *IF ... THEN around the line */
 } ritz_cdb;
 
-/** The element of the library called @p text, "185" or "SOLID185"; NULL: it is
- * not known. */
+/** Find an element of the library by its name, "185" or "SOLID185".
+ * @return NULL if it is not known */
 const ritz_cdb_kind *ritz_cdb_find_kind(ritz_piece text);
 
-/** The row of a number of element type, or the one where it belongs. */
+/** Index of the element type with this number, or the index at which to insert
+ * it. */
 int64_t ritz_cdb_seek_type(const ritz_cdb *all, int64_t number);
 
-/** The row of that number of element type; NULL: there is none. */
+/** The element type with this number; NULL if there is none. */
 ritz_cdb_type *ritz_cdb_find_type(const ritz_cdb *all, int64_t number);
 
-/** Fail about a line. */
+/** Fail with RITZ_ERR_FORMAT and a sentence that begins with file and line. */
 [[gnu::format(printf, 3, 4)]] ritz_status
 ritz_cdb_refuse(const ritz_cdb *all, int64_t line, const char *format, ...);
 
-/** Put together what the lines say. */
+/** Make a deck of the contents of the file. */
 ritz_status ritz_cdb_build(ritz_cdb *all, ritz_deck *out);
 
 #endif

@@ -1,11 +1,12 @@
 /*
- * Makes a deck of what the lines of a coded database say: grids with their
- * axes, cells for pictures, and supports. A node has a row for each direction
- * that one of its elements gives it. Only the mapping file of the matrices says
- * in which order their rows are.
+ * Makes a deck of a coded database: grids with their axes, cells for pictures,
+ * and supports. A node has a dof in each direction that one of its elements
+ * gives it. The order of these dofs in the matrices is known from the mapping
+ * file of the matrices only.
  *
- * Axes of a node are turned by THXY about z, then by THYZ about the new x, then
- * by THZX about the new y: their columns are Rz(THXY) Rx(THYZ) Ry(THZX).
+ * The axes of a node are turned by THXY about z, then by THYZ about the new x,
+ * then by THZX about the new y: they are the columns of
+ * Rz(THXY) Rx(THYZ) Ry(THZX).
  */
 #include "base/alloc.h"
 #include "formats/cdb.h"
@@ -15,9 +16,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Bits of directions. */
-enum { PLANE = 0x06, SOLID = 0x0e, FRAME = 0x46, ALL_SIX = 0x7e };
 
 /* ---- nodes --------------------------------------------------------------- */
 
@@ -30,7 +28,7 @@ static int compare_nodes(const void *left, const void *right)
     return order ? order : (a->line > b->line) - (a->line < b->line);
 }
 
-/* Sort the nodes; of one that is defined again, the last holds. */
+/* Sort the nodes. Of several definitions of one node, keep the last. */
 static void settle_nodes(ritz_cdb *all)
 {
     int64_t kept = 0;
@@ -50,7 +48,7 @@ static bool is_turned(const ritz_cdb_node *node)
            node->angle[2] != 0.0;
 }
 
-/* Row i of the axes is the i-th column of Rz(a) Rx(b) Ry(c). */
+/* Row i of `out` is column i of R = Rz(a) Rx(b) Ry(c), angles in degrees. */
 static void turn_axes(const double angle[static 3], double out[static 9])
 {
     const double degree = acos(-1.0) / 180.0;
@@ -72,7 +70,7 @@ static void turn_axes(const double angle[static 3], double out[static 9])
             out[3 * i + j] = R[3 * j + i];
 }
 
-/* Neighbours often have the same axes: a frame is made where angles change. */
+/* Consecutive nodes with the same angles share a frame. */
 static ritz_status place_nodes(const ritz_cdb *all, ritz_grids *out)
 {
     RITZ_OWN(ritz_grids) grids = {.num_frames = 1};
@@ -108,8 +106,8 @@ static ritz_status place_nodes(const ritz_cdb *all, ritz_grids *out)
 
 /* ---- elements ------------------------------------------------------------ */
 
-/* A cell of an element. It has corners only where nodes between them are
-   missing, or where corners coincide. */
+/* The cell that draws an element. It is the linear one, of corners alone, if a
+   node between corners is missing or corners coincide. */
 typedef struct cdb_cell {
     ritz_cell kind; /* 0: none */
     int64_t count;
@@ -125,8 +123,9 @@ static void pick_nodes(const int64_t *node, ritz_cell kind, int64_t count,
         out->grid[k] = node[order[k] - 'A'];
 }
 
-/* Bricks whose corners coincide, as K = L and O = P of a wedge. A pyramid stays
-   a brick. */
+/* Bricks with coinciding corners, in ANSYS's letters I J K L M N O P: a wedge has
+   K = L and O = P, a tetrahedron also M = N = O. A pyramid is drawn as a brick.
+ */
 static void cut_brick(const int64_t *n, cdb_cell *out)
 {
     const bool wedge = n[2] == n[3] && n[6] == n[7];
@@ -161,36 +160,21 @@ static bool is_whole_cell(const int64_t *n, int64_t size, int64_t corners)
     return true;
 }
 
-static bool has_node(const ritz_cdb *all, int64_t id)
-{
-    const ritz_cdb_node key = {.id = id};
-    int64_t from = 0, to = all->num_nodes;
-
-    while (from < to) {
-        const int64_t middle = (from + to) / 2;
-
-        if (all->node[middle].id < key.id)
-            from = middle + 1;
-        else
-            to = middle;
-    }
-    return from < all->num_nodes && all->node[from].id == id;
-}
-
-/* The cell of an element of a known kind; false if it lacks nodes. */
-static bool find_cell(const ritz_cdb *all, const ritz_cdb_element *element,
-                      const ritz_cdb_kind *kind, cdb_cell *out)
+/* Make the cell of an element, which has no cell if its kind has none.
+   @param[in] n  nodes of the element
+   @return whether the element has the nodes that the cell needs */
+static bool make_cell(const ritz_grids *grids, const ritz_cdb_element *element,
+                      const ritz_cdb_kind *kind, const int64_t *n,
+                      cdb_cell *out)
 {
     const ritz_cell_shape *shape = ritz_cell_shape_of(kind->cell);
     const int64_t corners = kind->cell == RITZ_CELL_LINE ? 2 : shape->corners;
-    const int64_t *n = NULL;
 
     *out = (cdb_cell){0};
     if (!kind->cell)
         return true;
     if (element->count < corners)
         return false;
-    n = all->joined + element->first;
     if (kind->cell == RITZ_CELL_LINE)
         pick_nodes(n, RITZ_CELL_LINE, 2, "AB", out);
     else if (element->count >= kind->size &&
@@ -199,7 +183,7 @@ static bool find_cell(const ritz_cdb *all, const ritz_cdb_element *element,
     else
         cut_corners(shape->linear, n, out);
     for (int64_t k = 0; k < out->count; k++)
-        if (!has_node(all, out->grid[k]))
+        if (ritz_grids_find(grids, out->grid[k]) < 0)
             return false;
     return true;
 }
@@ -226,7 +210,8 @@ static ritz_status list_cells(const ritz_cdb *all, ritz_deck *out)
         const int64_t first = cells->first[cells->count];
         cdb_cell cell = {0};
 
-        if (!kind || !find_cell(all, &all->element[k], kind, &cell)) {
+        if (!kind || !make_cell(&out->grids, &all->element[k], kind,
+                                all->joined + all->element[k].first, &cell)) {
             out->num_strange++;
             continue;
         }
@@ -248,31 +233,30 @@ static int64_t find_grid(const ritz_deck *deck, int64_t id)
     return id == 0 ? -1 : ritz_grids_find(&deck->grids, id);
 }
 
-/* RITZ_CDB_MASS21: with KEYOPT(3) = 2 it has no rotations, with 3 it is plane,
-   with 4 it is plane without a rotation. */
+/* Directions of the nodes of an element type. KEYOPT(3) of MASS21 chooses three
+   translations (2), the motions in a plane (3) or its translations (4). */
 static uint8_t mask_of(const ritz_cdb_type *type)
 {
-    static const uint8_t mass[] = {ALL_SIX, ALL_SIX, SOLID, FRAME, PLANE};
+    static const uint8_t mass[] = {RITZ_CDB_ALL_SIX, RITZ_CDB_ALL_SIX,
+                                   RITZ_CDB_SOLID, RITZ_CDB_FRAME,
+                                   RITZ_CDB_PLANE};
 
     if (type->kind->number != RITZ_CDB_MASS21)
         return type->kind->mask;
     return type->option_3 >= 0 && type->option_3 <= 4 ? mass[type->option_3]
-                                                      : ALL_SIX;
+                                                      : RITZ_CDB_ALL_SIX;
 }
 
+/* Set the bits of the directions that elements give to their nodes. */
 static void mark_joined(const ritz_cdb *all, const ritz_deck *deck,
                         uint8_t *mask)
 {
     for (int64_t k = 0; k < all->num_elements; k++) {
         const ritz_cdb_element *element = &all->element[k];
         const ritz_cdb_type *type = ritz_cdb_find_type(all, element->type);
-        const int64_t count =
-            type && type->kind
-                ? (element->count < type->kind->size ? element->count
-                                                     : type->kind->size)
-                : 0;
+        const int64_t size = type && type->kind ? type->kind->size : 0;
 
-        for (int64_t i = 0; i < count; i++) {
+        for (int64_t i = 0; i < size && i < element->count; i++) {
             const int64_t at = find_grid(deck, all->joined[element->first + i]);
 
             if (at >= 0)
@@ -320,7 +304,7 @@ static ritz_status list_supports(const ritz_cdb *all, ritz_deck *out)
 
 /* ---- constraints --------------------------------------------------------- */
 
-/* Elements that tie nodes join the commands that do. */
+/* Append the elements that tie nodes to the list of constraints. */
 static ritz_status add_tying_elements(ritz_cdb *all)
 {
     for (int64_t k = 0; k < all->num_elements; k++) {
@@ -337,7 +321,8 @@ static ritz_status add_tying_elements(ritz_cdb *all)
     return RITZ_OK;
 }
 
-/* Constraints are listed, none is understood. */
+/* List the constraints by name. None is evaluated, so that an import to which
+   they matter is refused. */
 static ritz_status list_constraints(ritz_cdb *all, ritz_deck *out)
 {
     RITZ_CHECK(add_tying_elements(all));

@@ -1,15 +1,18 @@
 /*
- * Elements of ANSYS' library, by their numbers [Ansys2024]: how they are drawn,
- * and which directions their nodes have.
+ * The elements of ANSYS's library [Ansys2024]: the cells that draw them, and the
+ * directions of their nodes.
  */
 #include "formats/cdb.h"
 
 #include <stdarg.h>
 
-/* Bits of directions. */
-enum { PLANE = 0x06, SOLID = 0x0e, ALL_SIX = 0x7e };
+enum {
+    PLANE = RITZ_CDB_PLANE,
+    SOLID = RITZ_CDB_SOLID,
+    ALL_SIX = RITZ_CDB_ALL_SIX,
+};
 
-/* The order of nodes is that of VTK. */
+/* ANSYS orders the nodes of an element as VTK does. */
 static const ritz_cdb_kind kinds[] = {
     {185, 8, RITZ_CELL_HEXA, SOLID, false},
     {45, 8, RITZ_CELL_HEXA, SOLID, false},
@@ -29,7 +32,7 @@ static const ritz_cdb_kind kinds[] = {
     {183, 8, RITZ_CELL_QUAD8, PLANE, false},
     {82, 8, RITZ_CELL_QUAD8, PLANE, false},
     {188, 2, RITZ_CELL_LINE, ALL_SIX, false},
-    {189, 3, RITZ_CELL_LINE, ALL_SIX, false}, /* ends, then between */
+    {189, 3, RITZ_CELL_LINE, ALL_SIX, false}, /* two ends, then the middle */
     {4, 2, RITZ_CELL_LINE, ALL_SIX, false},
     {44, 2, RITZ_CELL_LINE, ALL_SIX, false},
     {288, 2, RITZ_CELL_LINE, ALL_SIX, false},
@@ -59,7 +62,6 @@ const ritz_cdb_kind *ritz_cdb_find_kind(ritz_piece text)
     return NULL;
 }
 
-/* Row of a number of element type, or where it belongs. */
 int64_t ritz_cdb_seek_type(const ritz_cdb *all, int64_t number)
 {
     int64_t from = 0, to = all->num_types;
