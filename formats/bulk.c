@@ -471,7 +471,7 @@ static ritz_status take_cell(const ritz_card *card, const bulk_cell *cell,
     int64_t id = 0;
 
     if (card->count < 1 || ritz_card_whole(card, 0, 0, &id) != RITZ_OK)
-        id = 0; /* a cell without a number */
+        id = 0; /* the element's number is not known */
     if (count == 1 && corners == 2)
         return RITZ_OK;
     if (count < corners) {

@@ -100,8 +100,8 @@ const ritz_bulk_grid *ritz_bulk_find_grid(const ritz_bulk_cards *all,
  * counts once. @cost O(n log n) */
 ritz_status ritz_bulk_place_grids(ritz_bulk_cards *all, ritz_grids *out);
 
-/** The rows that EXTRN names. @param[in,out] out  its grids and points are
- * there */
+/** List the rows that EXTRN names. @param[in,out] out  its grids and points are
+ * complete */
 ritz_status ritz_bulk_list_external(const ritz_bulk_cards *all, ritz_deck *out);
 
 /**

@@ -1,11 +1,13 @@
 /*
- * EXTRN: the rows of the matrices of an external superelement.
+ * Reads EXTRN, which names the rows of the matrices of an external
+ * superelement:
  *
  *     EXTRN  G1  C1  G2  C2  G3  C3  G4  C4
  *            G5  C5  G6  THRU G7 C7  ...
  *
- * Its pairs are in the order of the rows, and the directions of a pair ascend
- * [MSC2022]. A scalar point has 0, 1 or nothing for its direction.
+ * The pairs are in the order of the rows. A pair with several directions stands
+ * for rows in ascending order of direction [MSC2022]. The direction of a scalar
+ * point is 0, 1 or blank.
  */
 #include "formats/bulk.h"
 
@@ -15,7 +17,7 @@
 #include <inttypes.h>
 #include <strings.h>
 
-enum { MOST_ROWS = 1000000 }; /* that THRU may stand for */
+enum { MOST_ROWS = 1000000 }; /* of all EXTRN cards */
 
 ritz_status ritz_bulk_take_external(ritz_bulk_cards *all, const ritz_card *card,
                                     int32_t how)
@@ -45,7 +47,7 @@ ritz_status ritz_bulk_take_external(ritz_bulk_cards *all, const ritz_card *card,
     return RITZ_OK;
 }
 
-/* Rows while they are collected. */
+/* A list of rows that grows. */
 typedef struct external_rows {
     int64_t count, room;
     ritz_dof *dof;
@@ -56,7 +58,7 @@ static void external_rows_free(external_rows *rows)
     free(rows->dof);
 }
 
-/* The rows of one grid or point, which may have no card in the deck. */
+/* Append the rows of one grid or scalar point. The deck may lack its card. */
 static ritz_status add_point(const ritz_bulk_cards *all, const ritz_deck *built,
                              const ritz_bulk_range *range, int64_t id,
                              external_rows *rows)
@@ -77,7 +79,8 @@ static ritz_status add_point(const ritz_bulk_cards *all, const ritz_deck *built,
     return RITZ_OK;
 }
 
-/* The first grid or point from number @p id on; INT64_MAX behind the last. */
+/* The smallest number of a grid or scalar point that is at least @p id;
+ * INT64_MAX if there is none. */
 static int64_t next_point(const ritz_deck *built, int64_t id)
 {
     const ritz_grids *grids = &built->grids;
@@ -105,8 +108,8 @@ static ritz_status add_range(const ritz_bulk_cards *all,
     return RITZ_OK;
 }
 
-/* Keep a sentence if a dof is named twice, as by the EXTRN cards of two
- * superelements. An import fails by it only if EXTRN has to name its rows. */
+/* If a dof is named twice, as by the EXTRN cards of two superelements, store
+ * the sentence that an import fails with if EXTRN has to name its rows. */
 static ritz_status note_twice(const external_rows *rows, ritz_deck *out)
 {
     RITZ_OWN_ARRAY ritz_dof *sorted = NULL;

@@ -6,11 +6,11 @@
  * CalculiX writes one triangle with the diagonal, by columns (*FREQUENCY,
  * SOLVER=MATRIXSTORAGE) [Dhondt2022]; Abaqus writes all entries (*MATRIX
  * OUTPUT, FORMAT=COORDINATE) [Abaqus2016]. Such a file states neither its order
- * nor its symmetry. The order is the largest row or column, of entries that are
- * zero too. A matrix none of whose entries has a counterpart across the diagonal
- * is symmetric, as one with entries in one triangle only; one all of whose
- * entries have counterparts is taken as it stands. A mixture is refused:
- * an entry without its counterpart may be zero or equal there.
+ * nor its symmetry. The order is the largest number of a row or column; entries
+ * that are zero count. If no entry (i, j) off the diagonal has its counterpart
+ * (j, i) in the file, the matrix is symmetric and the counterparts are equal.
+ * If each has, the matrix is read as it is. If only some have, the file is
+ * refused, since a missing counterpart could be zero or equal.
  */
 #include "base/alloc.h"
 #include "formats/market.h"
@@ -35,8 +35,8 @@ static bool is_real(const char *at, const char *end)
     return marked && ritz_decimal_skip(at, end) == end;
 }
 
-/* Whether the first line that is not blank is an entry. Other lines do not
- * decide what the file is: they are refused with their number. */
+/* Only the first line that is not blank decides whether a file has this format.
+ * A later line that is no entry is an error, which names the line. */
 static bool begins_with_entry(const char *bytes, int64_t size)
 {
     ritz_market m = {.text = {.at = bytes, .end = bytes + size}, .bare = true};
@@ -72,7 +72,7 @@ static int compare_places(const void *left, const void *right)
     return order ? order : (a->high > b->high) - (a->high < b->high);
 }
 
-/* A number of 64 bits that is as good as random [Steele2014]. */
+/* Hash z to 64 bits that look random [Steele2014]. */
 static uint64_t mix(uint64_t z)
 {
     z += UINT64_C(0x9e3779b97f4a7c15);
@@ -81,9 +81,9 @@ static uint64_t mix(uint64_t z)
     return z ^ (z >> 31);
 }
 
-/* Whether each entry off the diagonal has a counterpart. If so, the sums of a
- * random number for each place are the same for both triangles; if not, they
- * almost never are. This spares sorting large files, in which all have one. */
+/* Whether each entry off the diagonal has a counterpart: then the hashes of
+ * {row, column} have equal sums in both triangles. Otherwise the sums are
+ * different, but for a chance of about 2^-64. It is faster than sorting. */
 static bool all_paired(const ritz_market *m)
 {
     uint64_t difference = 0;
@@ -115,8 +115,8 @@ static ritz_status list_places(const ritz_market *m, int64_t *count,
     return RITZ_OK;
 }
 
-/* Whether entries have counterparts. If some have, and others that are not zero
- * have none, the file is refused. */
+/* *out tells whether entries have counterparts. A file in which some have,
+ * while others that are not zero have none, is refused. */
 static ritz_status find_pairs(const ritz_market *m, bool *out)
 {
     RITZ_OWN_ARRAY pair_place *place = NULL;

@@ -79,11 +79,12 @@ static pair divide_pair(pair a, double b)
 
 /*
  * 10^e = (T + t) 2^(E - 127) with 0 <= t < 1, E = floor(e log2(10)) and a whole
- * T of 128 bits, of which the highest is set. With m moved to the left until its
- * highest bit is set, w = m 2^z, the product w T 2^-64 has the two words a_1 and
- * a_0 and a fraction; it is too small by less than 1, and the fraction is less
- * than 1. So the double next to m 10^e follows from a_1 and a_0, unless these
- * are less than 2 below the middle between two doubles, or there [Lemire2021].
+ * T of 128 bits, of which the highest is set. With m moved to the left until
+ * its highest bit is set, w = m 2^z, the product w T 2^-64 has the two words
+ * a_1 and a_0 and a fraction; it is too small by less than 1, and the fraction
+ * is less than 1. So the double next to m 10^e follows from a_1 and a_0, unless
+ * these are less than 2 below the middle between two doubles, or there
+ * [Lemire2021].
  */
 #ifdef __SIZEOF_INT128__
 enum { LOWEST_POWER = -60, HIGHEST_POWER = 22 };
@@ -449,8 +450,8 @@ bool ritz_decimal_scan_field(const char *at, int64_t width, int64_t decimals,
     return true;
 }
 
-/* Blanks before the number are read as zeros, so that eight digits are combined
- * whatever its length. */
+/* Blanks before the number are turned into zeros. So eight digits are combined
+ * at once, without a loop over the length of the number. */
 bool ritz_decimal_scan_eight(const char *at, int64_t *out)
 {
     uint64_t v = 0, other = 0, value = 0;

@@ -51,8 +51,8 @@ typedef struct ritz_deck_reading {
     ritz_deck_text open[RITZ_DECK_DEEPEST + 1];
 } ritz_deck_reading;
 
-/** The lines of a text, without the byte order mark that editors put before
- * UTF-8. */
+/** Lines of a text. A byte order mark, with which some editors begin UTF-8, is
+ * skipped. */
 ritz_lines ritz_deck_lines(const char *text, int64_t size);
 
 /**
@@ -100,12 +100,13 @@ ritz_deck_refuse(const ritz_deck_files *files, int64_t file, int64_t line,
 ritz_status ritz_deck_paths(const ritz_deck_files *files, int64_t *count,
                             char ***out);
 
-/** The dofs whose bits are set in @p mask, bit c of grid k for its direction c,
- * by grid and direction. The caller frees *out. */
+/** List dofs in the order of grids and directions: grid k has a dof in
+ * direction c (1 to 6) if bit c of mask[k] is set. The caller frees *out. */
 ritz_status ritz_deck_list_dofs(const ritz_grids *grids, const uint8_t *mask,
                                 int64_t *count, ritz_dof **out);
 
-/** Copy the sentence of the latest failure, which is none yet. */
+/** Copy the sentence of the latest failure, for an error that matters only if a
+ * later step needs what is missing. */
 ritz_status ritz_deck_keep_sentence(char **out);
 
 void ritz_deck_reading_free(ritz_deck_reading *reading);

@@ -8,8 +8,8 @@
  * IFO 1 is square, 6 symmetric with one triangle given, 2 and 9 rectangular;
  * TIN 1 and 2 are real, 3 and 4 complex, A + iB or, if POLAR is 1, A at B
  * degrees. Square ones have a row for every dof that occurs as row or column,
- * ascending; rectangular ones have the rows and the columns that occur, or with
- * IFO 9 and NCOL the columns 1 to NCOL, of which GJ is the number.
+ * ascending. Rectangular ones have the rows and columns that occur; with IFO 9
+ * and NCOL they have the columns 1 to NCOL, and GJ is the number of a column.
  *
  * INCLUDE is followed where the file's folder is known; where it is not, a
  * matrix whose columns would have to come from elsewhere is refused.
@@ -35,7 +35,7 @@ enum {
     RITZ_DMIG_WIDE = 2,
     RITZ_DMIG_SYMMETRIC = 6,
     RITZ_DMIG_COLUMNS = 9,
-    MOST_COLUMNS = 1000000, /* that NCOL may state */
+    MOST_COLUMNS = 1000000, /* largest NCOL */
 };
 
 /* A header card. */
@@ -135,7 +135,7 @@ static ritz_status add_header(ritz_dmig_cards *all, const ritz_card *card)
         return ritz_card_refuse(card, 5, "0 or 1 for POLAR");
     header.complex = type > 2;
     header.polar = polar == 1;
-    if (header.form == RITZ_DMIG_COLUMNS) /* others may have any number there */
+    if (header.form == RITZ_DMIG_COLUMNS) /* other forms ignore the field */
         RITZ_CHECK(ritz_card_whole(card, 7, 0, &header.columns));
     if (header.columns < 0 || header.columns > MOST_COLUMNS)
         return ritz_card_refuse(card, 7, "a number of columns");

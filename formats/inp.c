@@ -172,7 +172,7 @@ static const struct fixing {
     {"ZSYMM", 0x38},    {"XASYMM", 0x1c}, {"YASYMM", 0x2a}, {"ZASYMM", 0x46},
 };
 
-/* Nothing may follow the first fields. */
+/* Refuse a data line with more than @p first fields. */
 static ritz_status check_end(const ritz_inp *all, int64_t first)
 {
     for (int64_t k = first; k < all->fields.count; k++)
@@ -184,7 +184,8 @@ static ritz_status check_end(const ritz_inp *all, int64_t first)
     return RITZ_OK;
 }
 
-/* A word; or first direction, last direction, motion. */
+/* A support is a word such as ENCASTRE, or first direction, last direction,
+ * motion. */
 static ritz_status take_directions(const ritz_inp *all,
                                    ritz_inp_support *support)
 {
@@ -476,8 +477,8 @@ static ritz_status end_data(const ritz_inp *all)
     return RITZ_OK;
 }
 
-/* Refuse a keyword that ends with a comma before data: the first line of data
- * would be read as its parameters. */
+/* If a keyword ends with a comma by mistake, the first data line is read as its
+ * parameters. Refuse the keyword if one of these cannot be a parameter. */
 static ritz_status check_continued(const ritz_inp *all)
 {
     const ritz_piece odd = all->keyword.odd;
@@ -578,8 +579,8 @@ static ritz_status parse_inp(const char *path, const char *bytes, int64_t size,
     return ritz_inp_build(&all, out);
 }
 
-/* Whether a line begins as a keyword does; "*KEYWORD" begins a deck of
-   LS-DYNA, which is another language. */
+/* Whether a line is a keyword. "*KEYWORD" is none: a deck of LS-DYNA, which is
+   not read, begins with it. */
 static bool begins_deck(ritz_piece line)
 {
     ritz_piece word = {line.text + 1, line.length - 1};

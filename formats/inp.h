@@ -30,7 +30,7 @@ typedef struct ritz_inp_keyword {
     int64_t count;
     ritz_piece key[RITZ_INP_PARAMETERS];
     ritz_piece value[RITZ_INP_PARAMETERS]; /* without quotes; empty: none */
-    ritz_piece odd; /* first word of the lines that continue it which is no
+    ritz_piece odd; /* the first word in a continuation line that cannot be a
                        parameter; empty: there is none */
     ritz_inp_place place;
 } ritz_inp_keyword;
@@ -124,8 +124,8 @@ typedef struct ritz_inp ritz_inp;
 struct ritz_inp {
     ritz_deck_files files;
     ritz_deck_reading reading;
-    bool held;       /* the line that was taken last is still to be read */
-    bool unfollowed; /* there are lines in files that are not read */
+    bool held;       /* the last line is to be read once more */
+    bool unfollowed; /* the deck includes files that are not read */
     ritz_inp_fields fields;
     ritz_inp_keyword keyword; /* to which data lines belong */
     /* takes one of them; NULL: they are passed over */
@@ -141,7 +141,8 @@ struct ritz_inp {
     int64_t num_sets, sets_room;
     ritz_inp_set *set;
     int64_t num_slots;
-    int64_t *slot; /* sets by their names: 0 is empty, k is the set k - 1 */
+    int64_t *slot; /* hash table of the names of sets: k + 1 for set k, 0 for an
+                      empty slot */
     int64_t num_members, members_room;
     ritz_inp_member *member;
     int64_t num_supports, supports_room;
@@ -249,23 +250,24 @@ ritz_status ritz_inp_open_set(ritz_inp *all, ritz_piece name, int64_t *out);
 ritz_status ritz_inp_add_range(ritz_inp *all, int64_t set, int64_t from,
                                int64_t to, int64_t step);
 
-/* What lines that name sets share: the nodes and sets that they named so far,
- * which are limited, and which sets were gone through for the last line. */
+/* State of ritz_inp_mark() that its calls share. Sets may contain sets, in
+ * circles too, so each call visits a set once, and the number of nodes and sets
+ * that all calls visit is limited. */
 typedef struct ritz_inp_marks {
-    int64_t work;
-    int64_t turn;     /* of lines that name a set */
-    int64_t *set;     /* those of this turn; NULL: there was none */
-    int64_t *turn_of; /* in which each set was gone through last */
+    int64_t work;     /* nodes and sets that were visited so far */
+    int64_t turn;     /* number of the call, of those that name a set */
+    int64_t *set;     /* sets to visit in this call; NULL before the first */
+    int64_t *turn_of; /* for each set, the last call that visited it */
 } ritz_inp_marks;
 
 void ritz_inp_marks_free(ritz_inp_marks *marks);
 
-/** Set the bits @p mask of each node that is named, at its place among the
- * sorted nodes. */
+/** Set the bits @p mask in into[k] for each node k that @p named names, itself
+ * or by a set; k is the index among the sorted nodes. */
 ritz_status ritz_inp_mark(const ritz_inp *all, const ritz_inp_named *named,
                           uint8_t mask, ritz_inp_marks *marks, uint8_t *into);
 
-/** Place of a node among the sorted ones; -1: there is none of that id. */
+/** Index of a node among the sorted nodes; -1 if there is none of that id. */
 int64_t ritz_inp_find(const ritz_inp *all, int64_t id);
 
 /** The same of a node that a line names; it must be there, and be no set. */

@@ -146,8 +146,8 @@ static ritz_status list_cells(const ritz_inp *all, ritz_elements *out)
     return RITZ_OK;
 }
 
-/* Directions that elements give to their nodes, which must be there unless
-   files that the deck includes are not read. */
+/* Set the bits of the directions that elements give to their nodes. A missing
+   node is an error, unless the deck includes files that are not read. */
 static ritz_status mark_joined(const ritz_inp *all, uint8_t *mask)
 {
     for (int64_t k = 0; k < all->num_elements; k++) {
@@ -171,13 +171,13 @@ static ritz_status mark_joined(const ritz_inp *all, uint8_t *mask)
 
 /* ---- supports ------------------------------------------------------------ */
 
-/* A support that moves fails the import only if matrices are to obey it. */
+/* Store a sentence about an imposed motion. An import fails with it only if the
+   supports of the deck are applied to matrices. */
 static ritz_status note_imposed(const ritz_inp *all,
                                 const ritz_inp_support *support, ritz_deck *out)
 {
     if (!support->imposed || out->imposed)
         return RITZ_OK;
-    /* the sentence is kept, the failure is not one yet */
     (void)ritz_inp_refuse(all, support->nodes.place,
                           "'*BOUNDARY' moves nodes by what is not zero: "
                           "imposed motion is no part of a component, use a "

@@ -14,12 +14,12 @@
 #include <inttypes.h>
 #include <string.h>
 
-/* Nodes and sets that all lines may name through sets. */
+/* Limit of the nodes and sets that supports visit, each as often as named. */
 static const int64_t MOST_NAMED = 20000000;
 
 /* ---- as they are written ------------------------------------------------- */
 
-/* FNV-1a of a name in capitals [FowlerNollVo2019]. */
+/* Hash of a name in capitals, by FNV-1a [FowlerNollVo2019]. */
 static uint64_t hash_name(ritz_piece name, bool inner)
 {
     uint64_t hash = UINT64_C(14695981039346656037) + inner;
@@ -31,8 +31,8 @@ static uint64_t hash_name(ritz_piece name, bool inner)
     return hash;
 }
 
-/* The slot of a set, or the empty one where it would be. There are a power of
-   two of them, at least twice as many as sets. */
+/* Find a set in the hash table: its slot, or the empty slot to insert it at.
+   The number of slots is a power of two, at least twice the number of sets. */
 static int64_t *find_slot(const ritz_inp *all, ritz_piece name, bool inner)
 {
     const uint64_t last = (uint64_t)all->num_slots - 1;
@@ -53,7 +53,7 @@ static int64_t find_set(const ritz_inp *all, ritz_piece name, bool inner)
     return all->num_slots > 0 ? *find_slot(all, name, inner) - 1 : -1;
 }
 
-/* Put all sets into twice as many slots. */
+/* Double the number of slots, and insert all sets again. */
 static ritz_status grow_slots(ritz_inp *all)
 {
     enum { FEWEST = 64 };
@@ -210,13 +210,13 @@ ritz_status ritz_inp_locate(const ritz_inp *all, const ritz_inp_named *named,
     return RITZ_OK;
 }
 
-/* Nodes that get the bits of a mask. */
+/* One call of ritz_inp_mark(). */
 typedef struct inp_marking {
     const ritz_inp *all;
     const ritz_inp_named *named;
     uint8_t mask;
-    uint8_t *into; /* of each node */
-    int64_t count; /* sets that are or were gone through, each once */
+    uint8_t *into; /* bits of each node */
+    int64_t count; /* of marks->set */
     ritz_inp_marks *marks;
 } inp_marking;
 
@@ -225,8 +225,8 @@ void ritz_inp_marks_free(ritz_inp_marks *marks)
     RITZ_FREE(marks->set, marks->turn_of);
 }
 
-/* Sets may name each other, and each line may name all of them. */
-static ritz_status spend(const inp_marking *it, int64_t work)
+/* Count visits of nodes and sets, and refuse more than MOST_NAMED. */
+static ritz_status count_visits(const inp_marking *it, int64_t work)
 {
     it->marks->work += work;
     if (it->marks->work > MOST_NAMED)
@@ -237,7 +237,7 @@ static ritz_status spend(const inp_marking *it, int64_t work)
     return RITZ_OK;
 }
 
-/* The nodes of a range that there are. */
+/* Mark the nodes of a range; numbers without a node are passed over. */
 static ritz_status mark_range(const inp_marking *it, int64_t from, int64_t to,
                               int64_t step)
 {
@@ -245,7 +245,7 @@ static ritz_status mark_range(const inp_marking *it, int64_t from, int64_t to,
     int64_t at = lower_node(all, from);
 
     for (; at < all->num_nodes && all->node[at].id <= to; at++) {
-        RITZ_CHECK(spend(it, 1));
+        RITZ_CHECK(count_visits(it, 1));
         if ((all->node[at].id - from) % step == 0)
             it->into[at] |= it->mask;
     }
@@ -260,7 +260,7 @@ static ritz_status mark_named(const ritz_inp_named *named, inp_marking *it)
 
     if (node.id > 0)
         return mark_range(it, node.id, node.id, 1);
-    RITZ_CHECK(spend(it, 1));
+    RITZ_CHECK(count_visits(it, 1));
     set = find_set(all, node.name, node.inner);
     if (set < 0)
         return ritz_inp_refuse(all, named->place,
@@ -300,7 +300,7 @@ ritz_status ritz_inp_mark(const ritz_inp *all, const ritz_inp_named *named,
              m = all->member[m].next) {
             const ritz_inp_member *one = &all->member[m];
 
-            RITZ_CHECK(spend(&it, 1));
+            RITZ_CHECK(count_visits(&it, 1));
             if (one->step > 0)
                 RITZ_CHECK(mark_range(&it, one->from, one->to, one->step));
             else

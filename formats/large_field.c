@@ -5,8 +5,8 @@
  *
  *     .123456789012345   123.456789012345   1234567890123.+8   1.2345678901-123
  *
- * [Nastran1986], bulk data, where a number of double precision must have a
- * letter, 1.234567890123D5.
+ * [Nastran1986], bulk data. Numbers of double precision must have the letter D
+ * in NASTRAN-95, as 1.234567890123D5.
  */
 #include "formats/large_field.h"
 
@@ -45,11 +45,11 @@ static large_figures round_to(double x, int n)
     return f;
 }
 
-/* What is written into a field, character after character. */
+/* The text of a field, to which characters are appended. */
 typedef struct large_field {
     int length;
     char *text;
-    bool lettered; /* always an exponent, with a D */
+    bool lettered; /* the number always has an exponent, with the letter D */
 } large_field;
 
 /* Count characters of `text`, or zeros if it is NULL. */
@@ -83,14 +83,15 @@ static bool print_fixed(const large_figures *f, int width, large_field *field)
     return true;
 }
 
-/* Columns of the exponent, "+5" or "-12", with a letter "D5" or "D-12". */
+/* Print an exponent, "+5" or "-12", or with its letter "D5" or "D-12".
+   @return its number of columns */
 static int print_exponent(const large_field *field, int e, char text[static 16])
 {
     return snprintf(text, 16, field->lettered ? "D%d" : "%+d", e);
 }
 
-/* With exponent, and the point where that is shortest, behind the first digit
-   if it may stand there; false if it is too wide. */
+/* Append the number with an exponent. The point goes behind the first digit
+   unless the exponent is shorter otherwise. False if it does not fit. */
 static bool print_scaled(const large_figures *f, int width, large_field *field)
 {
     int whole = f->E > 0 ? f->n : 0;

@@ -5,7 +5,7 @@
 enum { RITZ_LARGE_FIELD_SIZE = 16 + 1 }; /* columns, and the NUL */
 
 /**
- * A finite number with as many digits as fit: 15 from 0.1 to 1e15, otherwise
+ * Print a finite number with as many digits as fit: 15 from 0.1 to 1e15, else
  * 13 with an exponent of one digit (1e-5, 1e17), 12 with one of two (1e-20,
  * 1e30), 11 with one of three; one fewer behind a minus. Zeros at the end are
  * left out.
@@ -13,8 +13,8 @@ enum { RITZ_LARGE_FIELD_SIZE = 16 + 1 }; /* columns, and the NUL */
 void ritz_large_field_print(double x, char out[static RITZ_LARGE_FIELD_SIZE]);
 
 /**
- * The same with an exponent behind a D, as NASTRAN-95 wants a number of double
- * precision: 1.234567890123D5 has 13 digits.
+ * The same for NASTRAN-95, which reads a number of double precision only if it
+ * has an exponent with the letter D: 1.234567890123D5 has 13 digits.
  */
 void ritz_large_field_print_double(double x,
                                    char out[static RITZ_LARGE_FIELD_SIZE]);

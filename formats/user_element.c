@@ -99,7 +99,7 @@ static ritz_status read_element_keyword(ritz_user_element *e, const char *at)
     return RITZ_OK;
 }
 
-/* Append the nodes that one line of the comment names. */
+/* Append the nodes that are listed in one comment line. */
 static ritz_status take_nodes(ritz_user_element *e)
 {
     const char *at = e->text.line + 2; /* behind the stars */
@@ -118,7 +118,7 @@ static ritz_status take_nodes(ritz_user_element *e)
     return RITZ_OK;
 }
 
-/* Whether this comment is the title of the nodes. */
+/* Whether a comment is "ELEMENT NODES", after which the nodes are listed. */
 static bool is_title_of_nodes(const ritz_lines *text)
 {
     const ritz_comma_field title = {text->line + 2, text->line_end};
@@ -126,7 +126,7 @@ static bool is_title_of_nodes(const ritz_lines *text)
     return ritz_abaqus_spells(&title, "ELEMENT NODES");
 }
 
-/* Read the nodes, which CalculiX names in a comment only. */
+/* Read the nodes, which CalculiX lists in comments only. */
 static ritz_status read_nodes(ritz_user_element *e)
 {
     bool found = false;
