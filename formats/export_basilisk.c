@@ -7,15 +7,16 @@
  *     q_k'' + d_k q_k' + w_k^2 q_k = -p_k . x_t'' - h_k . x_r'',
  *     p_k, h_k = phi_k'M R    participation in translation and rotation
  *
- * A mass m on a spring along the unit vector e at r beside the grid obeys this
- * with q = sqrt(m) rho, p = sqrt(m) e and h = r x p: it stands for a mode with
- * h . p = 0, m = |p|^2, r = p x h / |p|^2. A body of inertia I that spins
- * about e stands for a mode with p = 0 and h = sqrt(I) e. Other modes fit
- * neither.
+ * A mass m on a spring along the unit vector e, at r from the grid, obeys this
+ * with q = sqrt(m) rho, p = sqrt(m) e and h = r x p. So a mode with h . p = 0
+ * is written as a mass m = |p|^2 at r = p x h / |p|^2. A body with the inertia
+ * I that spins about e obeys it with p = 0 and h = sqrt(I) e, and a mode with p
+ * = 0 is written as that. No effector represents other modes.
  *
- * Basilisk moves the mass of an effector with the hub in all directions. The
- * hub has the mass and inertia of the component without those of the effectors,
- * so that the rigid whole stays what it was.
+ * In Basilisk the mass of an effector moves with the hub in all directions. So
+ * the mass and inertia of the effectors are subtracted from those of the
+ * component; the rest is the hub, and hub and effectors together have the mass
+ * properties of the component.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -33,11 +34,12 @@
 
 enum { MOTIONS = RITZ_FRAME_MOTIONS };
 
+/* The effector that represents a mode. */
 typedef enum fit {
     FIT_SPRING,  /* a mass on a spring */
     FIT_SPINNER, /* a spinning body */
-    FIT_NONE,    /* h . p is not 0 */
-    FIT_STILL,   /* it does not act on the hub */
+    FIT_NONE,    /* none, as h . p is not 0 */
+    FIT_STILL,   /* none, as the mode does not act on the hub */
 } fit;
 
 typedef struct effector {
@@ -47,17 +49,20 @@ typedef struct effector {
     fit kind;
 } effector;
 
-/* A rigid body about the grid of the port. */
+/* Moments of mass about the grid of the port. */
 typedef struct rigid_part {
-    double mass, first[3], second[9]; /* m, m c, inertia, by rows */
+    double mass;
+    double first[3];  /* mass times centre */
+    double second[9]; /* inertia tensor, by rows */
 } rigid_part;
 
 typedef struct spacecraft {
     ritz_interface_form form;
     int64_t count;
     effector *effector;
-    rigid_part hub;              /* without the effectors */
-    double centre[3], tensor[9]; /* of the hub, inertia about its centre */
+    rigid_part hub;   /* the component without the effectors */
+    double centre[3]; /* of the hub, from the grid of the port */
+    double tensor[9]; /* inertia of the hub about its centre */
     char *certificate;
 } spacecraft;
 
@@ -68,18 +73,6 @@ static void spacecraft_free(spacecraft *s)
 }
 
 /* ---- modes --------------------------------------------------------------- */
-
-/* Modes Y while the grid is held, of K and M behind the six motions. */
-static ritz_status find_modes(const ritz_interface_form *form,
-                              ritz_pairs *pairs)
-{
-    const int64_t m = form->K.ncol - MOTIONS;
-    RITZ_OWN(ritz_dense) K = {0}, M = {0};
-
-    RITZ_CHECK(ritz_dense_block(&form->K, MOTIONS, m, MOTIONS, m, &K));
-    RITZ_CHECK(ritz_dense_block(&form->M, MOTIONS, m, MOTIONS, m, &M));
-    return ritz_eigen_dense(&K, &M, pairs);
-}
 
 static fit choose_fit(const effector *e, const rigid_part *whole)
 {
@@ -102,7 +95,7 @@ static ritz_status list_effectors(const rigid_part *whole, spacecraft *s)
     RITZ_OWN(ritz_pairs) pairs = {0};
     RITZ_OWN(ritz_dense) coupling = {0}, part = {0}, D = {0}, rate = {0};
 
-    RITZ_CHECK(find_modes(&s->form, &pairs));
+    RITZ_CHECK(ritz_interface_form_modes(&s->form, &pairs));
     RITZ_CHECK(ritz_dense_block(&s->form.M, 0, MOTIONS, MOTIONS, m, &coupling));
     RITZ_CHECK(ritz_dense_mul(&coupling, &pairs.Phi, &part));
     if (s->form.D.val) {
@@ -126,7 +119,7 @@ static ritz_status list_effectors(const rigid_part *whole, spacecraft *s)
     return RITZ_OK;
 }
 
-/* The mass on the spring, and its place. */
+/* Position of the mass on the spring. @return the mass */
 static double place_mass(const effector *e, double out[static 3])
 {
     const double mass = ritz_dot(e->p, e->p);
@@ -139,51 +132,56 @@ static double place_mass(const effector *e, double out[static 3])
 
 /* ---- the hub ------------------------------------------------------------- */
 
+/* J := J + mass (r'r I - r r') */
+static void add_point_inertia(double mass, const double r[static 3],
+                              double J[static 9])
+{
+    const double square = ritz_dot(r, r);
+
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            J[3 * i + j] += mass * ((i == j ? square : 0.0) - r[i] * r[j]);
+}
+
 /* Mass and inertia of the component, from the mass matrix of six motions. */
 static void read_whole(const ritz_dense *M, rigid_part *out)
 {
     ritz_inertia inertia = {0};
-    double square = 0.0;
 
     ritz_inertia_read(M, &inertia);
     out->mass = inertia.mass;
-    square = ritz_dot(inertia.centre, inertia.centre);
-    for (int i = 0; i < 3; i++) {
-        out->first[i] = inertia.mass * inertia.centre[i];
-        for (int j = 0; j < 3; j++)
-            out->second[3 * i + j] =
-                inertia.tensor[3 * i + j] +
-                inertia.mass * ((i == j ? square : 0.0) -
-                                inertia.centre[i] * inertia.centre[j]);
-    }
-}
-
-static void take_away(const effector *e, rigid_part *hub)
-{
-    double r[3], mass = 0.0, square = 0.0;
-
-    if (e->kind == FIT_SPRING) {
-        mass = place_mass(e, r);
-        square = ritz_dot(r, r);
-        hub->mass -= mass;
-        for (int i = 0; i < 3; i++)
-            hub->first[i] -= mass * r[i];
-    }
     for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            if (e->kind == FIT_SPRING)
-                hub->second[3 * i + j] -=
-                    mass * ((i == j ? square : 0.0) - r[i] * r[j]);
-            else if (e->kind == FIT_SPINNER)
-                hub->second[3 * i + j] -= e->h[i] * e->h[j];
+        out->first[i] = inertia.mass * inertia.centre[i];
+    memcpy(out->second, inertia.tensor, sizeof out->second);
+    add_point_inertia(inertia.mass, inertia.centre, out->second);
 }
 
-/* Move the inertia of the hub to its centre. */
-static ritz_status settle_hub(spacecraft *s)
+static void subtract_spring(const effector *e, rigid_part *hub)
+{
+    double r[3];
+    const double mass = place_mass(e, r);
+
+    hub->mass -= mass;
+    for (int i = 0; i < 3; i++)
+        hub->first[i] -= mass * r[i];
+    add_point_inertia(-mass, r, hub->second);
+}
+
+static void subtract_effector(const effector *e, rigid_part *hub)
+{
+    if (e->kind == FIT_SPRING)
+        subtract_spring(e, hub);
+    for (int i = 0; e->kind == FIT_SPINNER && i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            hub->second[3 * i + j] -= e->h[i] * e->h[j];
+}
+
+/* Centre of the hub, and its inertia about it, which must be positive. */
+static ritz_status find_hub_inertia(spacecraft *s)
 {
     const rigid_part *hub = &s->hub;
     const ritz_dense tensor = {3, 3, s->tensor};
-    double least[3] = {0}, square = 0.0;
+    double least[3] = {0};
 
     RITZ_REFUSE_IF(hub->mass <= 0.0, RITZ_ERR_ARGUMENT,
                    "the effectors have more mass than the component, and leave "
@@ -192,12 +190,8 @@ static ritz_status settle_hub(spacecraft *s)
                    hub->mass);
     for (int i = 0; i < 3; i++)
         s->centre[i] = hub->first[i] / hub->mass;
-    square = ritz_dot(s->centre, s->centre);
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            s->tensor[3 * i + j] = hub->second[3 * i + j] -
-                                   hub->mass * ((i == j ? square : 0.0) -
-                                                s->centre[i] * s->centre[j]);
+    memcpy(s->tensor, hub->second, sizeof s->tensor);
+    add_point_inertia(-hub->mass, s->centre, s->tensor);
     RITZ_CHECK(ritz_general_symmetric_values(&tensor, least));
     RITZ_REFUSE_IF(least[0] <= 0.0, RITZ_ERR_ARGUMENT,
                    "the effectors leave the hub a moment of inertia of %.6g: "
@@ -254,8 +248,8 @@ static ritz_status fill_spacecraft(const ritz_export_object *object,
     RITZ_CHECK(demand_effectors(s));
     s->hub = whole;
     for (int64_t k = 0; k < s->count; k++)
-        take_away(&s->effector[k], &s->hub);
-    RITZ_CHECK(settle_hub(s));
+        subtract_effector(&s->effector[k], &s->hub);
+    RITZ_CHECK(find_hub_inertia(s));
     return ritz_certificate(object, request->stamp, &s->certificate);
 }
 

@@ -1,13 +1,14 @@
 /*
- * Matrices for a load of Project Chrono between bodies and shafts
- * [Chrono2025], as text that a few lines of C++ read, and any other program:
+ * Writes the matrices of a component for Project Chrono [Chrono2025], where
+ * they are a load between bodies and shafts. The file is text that a few lines
+ * of C++ or another language can read:
  *
  *     # comments: the certificate
  *     frames K
  *     GRID X Y Z            K lines: interface frames at rest, basic axes
  *     modes N
- *     HERTZ                 N lines: with the frames held; 0: no stiffness
- *     M                     6 K + N lines of as many numbers; then K and D
+ * HERTZ N lines: frequency with all frames held; 0 of a mode * without
+ stiffness * M 6 K + N lines of as many numbers; then K and D
  *
  * Coordinates are six small motions of each frame, translations before
  * rotations, and then modes. Numbers have 17 digits.
@@ -37,21 +38,17 @@ static int64_t count_modes(const chrono_load *load)
     return load->form.K.ncol - RITZ_FRAME_MOTIONS * load->form.count;
 }
 
-/* Frequencies with the frames held. They are computed from the blocks of K and
-   M, since the form has none where it kept the columns of the basis. */
+/* Frequencies with all frames held. The form itself has none where it kept the
+   columns of the basis. */
 static ritz_status list_frequencies(chrono_load *load)
 {
-    const int64_t first = RITZ_FRAME_MOTIONS * load->form.count;
     const int64_t m = count_modes(load);
-    RITZ_OWN(ritz_dense) K = {0}, M = {0};
     RITZ_OWN(ritz_pairs) pairs = {0};
 
     RITZ_CHECK_NEW(load->hertz, m);
     if (m == 0)
         return RITZ_OK;
-    RITZ_CHECK(ritz_dense_block(&load->form.K, first, m, first, m, &K));
-    RITZ_CHECK(ritz_dense_block(&load->form.M, first, m, first, m, &M));
-    RITZ_CHECK(ritz_eigen_dense(&K, &M, &pairs));
+    RITZ_CHECK(ritz_interface_form_modes(&load->form, &pairs));
     for (int64_t k = pairs.num_rigid; k < pairs.Phi.ncol; k++)
         load->hertz[k] = ritz_eigen_hertz(pairs.lambda[k]);
     return RITZ_OK;

@@ -485,3 +485,15 @@ ritz_status ritz_interface_form_ground(const ritz_interface_form *form,
     out->holds = out->rigid_hz > RITZ_HELD * out->flexible_hz;
     return RITZ_OK;
 }
+
+ritz_status ritz_interface_form_modes(const ritz_interface_form *form,
+                                      ritz_pairs *out)
+{
+    const int64_t first = RITZ_FRAME_MOTIONS * form->count;
+    const int64_t m = form->K.ncol - first;
+    RITZ_OWN(ritz_dense) K = {0}, M = {0};
+
+    RITZ_CHECK(ritz_dense_block(&form->K, first, m, first, m, &K));
+    RITZ_CHECK(ritz_dense_block(&form->M, first, m, first, m, &M));
+    return ritz_eigen_dense(&K, &M, out);
+}

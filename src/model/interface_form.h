@@ -64,6 +64,11 @@ typedef struct ritz_interface_ground {
 ritz_status ritz_interface_form_ground(const ritz_interface_form *form,
                                        ritz_interface_ground *out);
 
+/** Modes of the body with its interface held: eigenpairs of the blocks of K and
+ * M after the motions x. @cost O(r^3) */
+ritz_status ritz_interface_form_modes(const ritz_interface_form *form,
+                                      ritz_pairs *out);
+
 void ritz_interface_form_free(ritz_interface_form *form);
 
 #endif
