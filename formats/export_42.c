@@ -10,9 +10,9 @@
  * The reference point is the centre of mass, where 42 sets Pf and Hf to zero
  * (REFPT_CM), or the origin of the body's axes (REFPT_JOINT).
  *
- * 42 reads what follows the numbers of a line by "%[^\n]" into 80 bytes: each
- * line needs such a text, and none may be longer. 42 stops at "[EOF]"; what
- * follows is for people. Nodes are in a file of their own.
+ * 42 reads the text after the numbers of a line by "%[^\n]" into 80 bytes: each
+ * line needs such a text, of at most 79 letters. 42 stops at "[EOF]"; the text
+ * after it is for people. A second file has the nodes.
  */
 #include "base/alloc.h"
 #include "base/draft.h"
@@ -25,13 +25,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { NAME_ROOM = 39 }; /* letters of a file's name that 42 holds */
+enum { NAME_ROOM = 39 }; /* letters of a file's name that 42 stores */
 
 typedef struct body_42 {
     const ritz_reduced *reduced;
     ritz_normal_body normal;
     bool at_centre; /* REFPT_CM */
-    int64_t *node;  /* of each port, from 0; -1: it is no joint */
+    int64_t *node;  /* for each port, the index of its node; -1 if it has more
+                       than one grid, and so is no joint */
     char *certificate;
 } body_42;
 
@@ -44,7 +45,8 @@ static void body_42_free(body_42 *b)
 
 /* ---- the body ----------------------------------------------------------- */
 
-/* 42 leaves Pf and Hf out at the centre of mass, where they must be zero. */
+/* With the reference point at the centre of mass, 42 takes Pf and Hf as zero.
+   That is true of modes referred to mean axes only. */
 static ritz_status find_body(const ritz_reduced *reduced,
                              const ritz_export_request *request, body_42 *b)
 {
@@ -84,7 +86,7 @@ static ritz_status find_joints(body_42 *b)
     return RITZ_OK;
 }
 
-/* ---- its file ----------------------------------------------------------- */
+/* ---- the file of modes -------------------------------------------------- */
 
 static void put_title(FILE *file, const char *title)
 {
@@ -96,33 +98,53 @@ static void put_count(FILE *file, int64_t count)
     fprintf(file, "%" PRId64 "   ! Number of non-zero elements\n", count);
 }
 
-/* Elements of a shape at points, the nodes or the ports. Point i is the node
- * `node[i]`, or node i if `node` is NULL. */
-static void put_shape(FILE *file, const char *title, const char *point,
-                      const ritz_dense *shape, int64_t count,
-                      const int64_t *node)
+static int64_t count_nonzeros(const ritz_dense *A)
 {
-    int64_t elements = 0;
+    int64_t count = 0;
 
-    for (int writing = 0; writing < 2; writing++) {
-        if (writing) {
-            put_title(file, title);
-            put_count(file, elements);
-        }
-        for (int64_t k = 0; shape->val && k < shape->ncol; k++)
-            for (int64_t i = 0; i < count; i++)
-                for (int64_t a = 0; a < 3; a++) {
-                    int64_t at = node ? node[i] : i;
-                    double x =
-                        at < 0 ? 0.0 : ritz_dense_col(shape, k)[3 * at + a];
+    for (int64_t i = 0; A->val && i < A->nrow * A->ncol; i++)
+        count += A->val[i] != 0.0;
+    return count;
+}
 
-                    elements += x != 0.0 && !writing;
-                    if (x != 0.0 && writing)
-                        fprintf(file,
-                                "%" PRId64 " %" PRId64 " %" PRId64
-                                " %.17g   ! [Mode] [%s] [Axis] Value\n",
-                                k, i, a, x, point);
-                }
+/* Points whose modes are written: all nodes, or the joints. */
+typedef struct point_list {
+    const char *title, *name;
+    int64_t count;
+    const int64_t *node; /* index of each point's node; -1: its modes are 0;
+                            NULL: point i is node i */
+} point_list;
+
+/* Component a of mode k at point i. */
+static double mode_at(const ritz_dense *shape, const point_list *points,
+                      int64_t k, int64_t i, int64_t a)
+{
+    const int64_t node = points->node ? points->node[i] : i;
+
+    return node < 0 ? 0.0 : ritz_dense_col(shape, k)[3 * node + a];
+}
+
+static void put_shape(FILE *file, const char *title, const ritz_dense *shape,
+                      const point_list *points)
+{
+    const int64_t per_mode = 3 * points->count;
+    const int64_t all = shape->val ? shape->ncol * per_mode : 0;
+    int64_t nonzeros = 0;
+
+    for (int64_t e = 0; e < all; e++)
+        nonzeros += mode_at(shape, points, e / per_mode, e % per_mode / 3,
+                            e % 3) != 0.0;
+    put_title(file, title);
+    put_count(file, nonzeros);
+    for (int64_t e = 0; e < all; e++) {
+        const int64_t k = e / per_mode, i = e % per_mode / 3, a = e % 3;
+        const double x = mode_at(shape, points, k, i, a);
+
+        if (x != 0.0)
+            fprintf(file,
+                    "%" PRId64 " %" PRId64 " %" PRId64
+                    " %.17g   ! [Mode] [%s] [Axis] Value\n",
+                    k, i, a, x, points->name);
     }
 }
 
@@ -138,12 +160,8 @@ static void put_diagonal(FILE *file, const char *title, int64_t count,
 
 static void put_damping(FILE *file, const ritz_dense *D)
 {
-    int64_t elements = 0;
-
-    for (int64_t i = 0; D->val && i < D->nrow * D->ncol; i++)
-        elements += D->val[i] != 0.0;
     put_title(file, "Non-zero Damping Matrix Elements");
-    put_count(file, elements);
+    put_count(file, count_nonzeros(D));
     for (int64_t j = 0; D->val && j < D->ncol; j++)
         for (int64_t i = 0; i < D->nrow; i++)
             if (ritz_dense_col(D, j)[i] != 0.0)
@@ -152,7 +170,7 @@ static void put_damping(FILE *file, const ritz_dense *D)
                         i, j, ritz_dense_col(D, j)[i]);
 }
 
-/* Rows first, first + 1, first + 2 of the momenta: Pf or Hf. */
+/* Pf is rows 0 to 2 of the momenta of the modes, Hf is rows 3 to 5. */
 static void put_momenta(FILE *file, const char *title,
                         const ritz_dense *momentum, int64_t first)
 {
@@ -168,12 +186,8 @@ static void put_momenta(FILE *file, const char *title,
 /* L[i][j][k] = X_j' m T_i(:,k) */
 static void put_linear(FILE *file, const ritz_invariants *of, int64_t m)
 {
-    int64_t elements = 0;
-
-    for (int64_t i = 0; i < of->position.nrow * of->position.ncol; i++)
-        elements += of->position.val[i] != 0.0;
     put_title(file, "Linear Modal Integral, L, 3 x 3 x Nf");
-    put_count(file, elements);
+    put_count(file, count_nonzeros(&of->position));
     for (int64_t i = 0; i < 3; i++)
         for (int64_t k = 0; k < m; k++)
             for (int64_t j = 0; j < 3; j++) {
@@ -190,12 +204,8 @@ static void put_linear(FILE *file, const ritz_invariants *of, int64_t m)
 /* N[i][j][k][l] = T_i(:,k)' m T_j(:,l) */
 static void put_angular(FILE *file, const ritz_invariants *of, int64_t m)
 {
-    int64_t elements = 0;
-
-    for (int64_t i = 0; i < of->product.nrow * of->product.ncol; i++)
-        elements += of->product.val[i] != 0.0;
     put_title(file, "Angular Modal Integral, N, 3 x 3 x Nf x Nf");
-    put_count(file, elements);
+    put_count(file, count_nonzeros(&of->product));
     for (int64_t col = 0; col < 3 * m; col++)
         for (int64_t row = 0; row < 3 * m; row++) {
             double x = ritz_dense_col(&of->product, col)[row];
@@ -211,28 +221,25 @@ static void put_angular(FILE *file, const ritz_invariants *of, int64_t m)
 static void put_shapes(FILE *file, const body_42 *b)
 {
     const ritz_normal_body *n = &b->normal;
-    const struct {
-        const char *title, *point;
-        int64_t count;
-        const int64_t *node;
-    } of[] = {
+    const point_list list[] = {
         {"Joint Node Mode Shapes", "Joint", b->reduced->num_ports, b->node},
         {"Analysis Node Mode Shapes", "Node", n->floating.count, NULL},
     };
 
-    for (int k = 0; k < 2; k++) {
-        put_title(file, of[k].title);
+    for (size_t k = 0; k < sizeof list / sizeof *list; k++) {
+        put_title(file, list[k].title);
         put_shape(file, "Non-zero Translation Mode Shape (PSI) Elements",
-                  of[k].point, &n->shape, of[k].count, of[k].node);
+                  &n->shape, &list[k]);
         put_shape(file, "Non-zero Rotation Mode Shape (THETA) Elements",
-                  of[k].point, &n->turn, of[k].count, of[k].node);
+                  &n->turn, &list[k]);
     }
 }
 
 /*
- * Lines to copy into the spacecraft file, in its order. With the reference point
- * at the centre of mass the body's axes begin at the basic origin; otherwise
- * they begin at the reference point, about which the moments of inertia are.
+ * Mass properties, to be copied into the spacecraft file line by line. With
+ * REFPT_CM the origin of the body's axes is the basic origin and moments of
+ * inertia are about the centre of mass. With REFPT_JOINT both are at the origin
+ * of the frame.
  */
 static void put_mass(FILE *file, const body_42 *b)
 {
