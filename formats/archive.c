@@ -1,7 +1,7 @@
 /*
- * A zip archive. Times are left out, owners are 0 and modes are fixed, so that
- * the same files make the same bytes. It is made in memory, as libarchive 3.6
- * does not free its compressor if a write fails.
+ * Writes zip archives. Entries have no times, the owner 0 and fixed modes, so
+ * that the same files always give the same bytes. The archive is built in
+ * memory, as libarchive 3.6 does not free its compressor if a write fails.
  */
 #include "formats/fmu.h"
 #include "formats/sink.h"
@@ -54,8 +54,8 @@ static ritz_status put_file(zip_writer a, const char *path,
     return RITZ_OK;
 }
 
-static la_ssize_t append(struct archive *a, void *to, const void *bytes,
-                         size_t size)
+static la_ssize_t append_bytes(struct archive *a, void *to, const void *bytes,
+                               size_t size)
 {
     if (fwrite(bytes, 1, size, to) == size)
         return (la_ssize_t)size;
@@ -72,7 +72,7 @@ static ritz_status put_files(FILE *to, const char *path,
     if (archive_write_set_format_zip(a) != ARCHIVE_OK ||
         archive_write_set_options(a, "zip:compression=deflate") != ARCHIVE_OK ||
         archive_write_set_bytes_in_last_block(a, 1) != ARCHIVE_OK ||
-        archive_write_open(a, to, NULL, append, NULL) != ARCHIVE_OK)
+        archive_write_open(a, to, NULL, append_bytes, NULL) != ARCHIVE_OK)
         return fail_archive(a, path);
     for (int64_t k = 0; k < files->count; k++)
         RITZ_CHECK(put_file(a, path, &files->at[k]));
@@ -81,7 +81,7 @@ static ritz_status put_files(FILE *to, const char *path,
     return RITZ_OK;
 }
 
-/* Bytes that go into a file as they are. */
+/* The archive in memory. */
 typedef struct zip_bytes {
     char *at;
     size_t size;

@@ -6,13 +6,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What is certified of a reduced component or of a state space. */
+/* The parts of a reduced component or state space that its certificate states.
+ */
 typedef struct certified {
     const char *what;
     const ritz_origin *origin;
     const ritz_columns *columns;
     const char *units, *damping;
-    bool damped; /* matrices hold damping */
+    bool damped; /* the matrices contain damping */
     const ritz_measures *errors, *estimates;
     int64_t order;
 } certified;
@@ -37,7 +38,8 @@ static certified find_certified(const ritz_export_object *object)
                        &s->errors,    &s->estimates, ritz_state_space_order(s)};
 }
 
-/* Text of files and commands, which may hold any byte but NUL. */
+/* Names of files and commands may contain any byte. Control characters, and
+   bytes that are no UTF-8, are written as '?'. */
 static void put_clean(FILE *file, const char *before, const char *text)
 {
     fputs(before, file);
@@ -162,7 +164,8 @@ ritz_status ritz_certificate(const ritz_export_object *object,
     return RITZ_OK;
 }
 
-/* How many of the `length` bytes of a line the next comment takes. */
+/* Number of bytes, of the `length` that a line has left, that fit into one
+   comment line. */
 static int cut_line(const char *text, int length, int width)
 {
     int whole = 0;

@@ -8,13 +8,14 @@
 #include <stdio.h>
 
 /**
- * Method, order, band of its modes, units, damping, errors with their limits,
- * SHA-256 of each input, the command that made the model and measured it, with
- * its band, and that of the export; a line each, ended by '\n', control
- * characters replaced by '?'. Of an object that is neither a reduced component
- * nor a state space, inputs and command alone.
+ * Make the certificate of an object. It has a line, ended by '\n', for each of:
+ * the method, the order and the band of the modes, the units, the damping, each
+ * error with its limit, the SHA-256 of each input, the commands that made and
+ * measured the model, and the command of the export. Control characters are
+ * replaced by '?'. An object that is neither a reduced component nor a state
+ * space has the lines of inputs and commands alone.
  *
- * @param[in]  object  shapes may have a reduced component beside them
+ * @param[in]  object  `reduced` is certified too if it is given with shapes
  * @param[in]  stamp   inputs and command; NULL: not known
  * @param[out] out     the caller frees it
  */
@@ -22,17 +23,17 @@ ritz_status ritz_certificate(const ritz_export_object *object,
                              const ritz_stamp *stamp, char **out);
 
 /**
- * Put lines of text as comments, each behind @p before.
+ * Write a text as comment lines, each of which begins with @p before.
  *
- * @param[in] width  bytes of text a line, at least 4: what is longer goes on in
- *                   the next line, cut behind a blank if there is one, and
- *                   never within a letter; 0: any number
+ * @param[in] width  largest number of bytes of text in a line, at least 4.
+ *                   Longer lines are broken after a blank if there is one, and
+ *                   never within a letter of UTF-8. 0: no limit
  */
 void ritz_comment_put(FILE *file, const char *before, int width,
                       const char *text);
 
-/** Put it as an XML comment, whose "--" becomes "- -"; markup is replaced by
- * entities. */
+/** Write a text as one XML comment. "--", which ends a comment, is written as
+ * "- -", and markup as entities. */
 void ritz_comment_put_xml(FILE *file, const char *text);
 
 #endif
