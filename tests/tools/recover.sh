@@ -146,6 +146,24 @@ if command -v gnuplot >/dev/null; then
     works '  four times, with the colours of stresses' sh -c \
         'grep -q "2 s" shaken.svg && grep -q "|stress| 0 to" shaken.svg &&
          [ "$(sed 1d shaken.svg.tsv | grep -c "^3.0")" = 62 ]'
+    cat >bands.py <<'END_PY'
+import meshio, numpy, re
+names = re.findall('file="([^"]*)"', open("acceleration.pvd").read())
+frames = [names[(k + 1) * (len(names) - 1) // 4] for k in range(4)]
+value = numpy.array([abs(meshio.read(f).cell_data["stress"][0].ravel())
+                     for f in frames])
+most = value.max()
+due = 2 + numpy.digitize(value, [most / 64, most / 16, most / 4])
+drawn = numpy.loadtxt("shaken.svg.tsv", skiprows=1)
+for k in range(4):
+    found = drawn[(drawn[:, 0] == k) & (drawn[:, 1] > 0), 1]
+    assert (numpy.bincount(found.astype(int)) == numpy.bincount(due[k])).all()
+words = [float(b) for b in re.findall(
+    r"\|stress\| [^ ]* to ([^ <]*)<", open("shaken.svg").read())]
+assert numpy.allclose(words, [most / 64, most / 16, most / 4, most], rtol=5e-3)
+END_PY
+    works '  bands of stress, each to four times the one before' \
+        $python bands.py
     expect 0 '' ritz-chart report acceleration.pvd -o report.html
     expect 0 'Stresses in motion' cat report.html
     expect 1 'holds a collection of frames, not a time response' \

@@ -6,13 +6,15 @@
 #include "model/cell_edges.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 enum {
     PANELS = 4,
     ACROSS = 2,
-    PANEL_WIDE = 330,
-    PANEL_HIGH = 250,
-    CLASSES = 6, /* at rest, without a value, and quarters of the largest */
+    PANEL_WIDE = 450,
+    PANEL_HIGH = 300,
+    BANDS = 4,           /* of values */
+    CLASSES = 2 + BANDS, /* at rest, without a value, and the bands */
     MOST_LINES = 40000,
     RIGID = 6,
 };
@@ -183,7 +185,8 @@ static double span(const ritz_shapes *s)
     return most;
 }
 
-/* The largest displacement is drawn as a twelfth of the body. */
+/* The largest displacement is drawn as a twelfth of the body, or less: the scale
+   is a number that has one digit. */
 static void choose_scale(motion_chart *m)
 {
     double most = 0.0;
@@ -198,8 +201,12 @@ static void choose_scale(motion_chart *m)
             if (!isnan(s->of_cell[i]))
                 m->largest = fmax(m->largest, fabs(s->of_cell[i]));
     }
-    if (most > 0.0)
-        m->scale = span(&m->frame[0].shapes) / 12.0 / most;
+    if (most > 0.0) {
+        const double fits = span(&m->frame[0].shapes) / 12.0 / most;
+        const double power = pow(10.0, floor(log10(fits)));
+
+        m->scale = floor(fits / power) * power;
+    }
 }
 
 /* ---- lines -------------------------------------------------------------- */
@@ -218,16 +225,25 @@ static void project(const double *x, const double *u, double scale,
     out[1] = cos(height) * at[2] - sin(height) * along;
 }
 
+/* Where band k begins. Each ends at four times where the one before it does, the
+   last at the largest value: a few members carry most, and the others would
+   look alike in bands of equal width. */
+static double band_from(const motion_chart *m, int k)
+{
+    return k > 0 ? ldexp(m->largest, -2 * (BANDS - k)) : 0.0;
+}
+
 static int class_of(const motion_chart *m, const ritz_shapes *s, int64_t cell)
 {
     const double value =
         s->num_fields > 0 ? fabs(s->of_cell[cell]) : (double)NAN;
-    int quarter = 0;
+    int band = BANDS - 1;
 
     if (isnan(value) || m->largest == 0.0)
         return 1;
-    quarter = (int)(4.0 * value / m->largest);
-    return 2 + (quarter < 3 ? quarter : 3);
+    while (value < band_from(m, band))
+        band--;
+    return 2 + band;
 }
 
 typedef struct box {
@@ -292,10 +308,18 @@ static void give_ranges(const motion_chart *m, const box *b)
                        range[0], sizeof *range);
 }
 
+/* Three digits, without an exponent up to a million. */
+static void write_value(double value, char out[PICTURE_WORD])
+{
+    char rounded[PICTURE_WORD];
+
+    snprintf(rounded, sizeof rounded, "%.3g", value);
+    snprintf(out, PICTURE_WORD, "%.6g", strtod(rounded, NULL));
+}
+
 static void give_classes(const motion_chart *m)
 {
     const ritz_shapes *s = &m->frame[0].shapes;
-    const double quarter = 0.25 * m->largest;
     char colour[CLASSES][PICTURE_WORD];
     double wide[CLASSES];
 
@@ -312,14 +336,16 @@ static void give_classes(const motion_chart *m)
     for (int k = m->largest > 0.0 ? 2 : 1; k < CLASSES; k++) {
         const picture_sign sign = {.colour = looks[k].colour,
                                    .wide = looks[k].wide};
+        char from[PICTURE_WORD], to[PICTURE_WORD];
 
-        if (k == 1)
+        if (k == 1) {
             picture_add_sign(m->picture, sign, "deformed");
-        else
-            picture_add_sign(m->picture, sign, "|%.40s| %.3g to %.3g",
-                             s->field[0], (k - 2) * quarter, (k - 1) * quarter);
-        if (k == 1)
             return;
+        }
+        write_value(band_from(m, k - 2), from);
+        write_value(band_from(m, k - 1), to);
+        picture_add_sign(m->picture, sign, "|%.40s| %.40s to %.40s",
+                         s->field[0], from, to);
     }
 }
 
@@ -368,7 +394,7 @@ static ritz_status draw(const char *path, motion_chart *m)
     give_classes(m);
     put_rows(m);
     snprintf(p->note, sizeof p->note,
-             "displacements %.3g times as large, less the rigid motion that "
+             "displacements %.15g times as large, less the rigid motion that "
              "fits best",
              m->scale);
     return picture_draw(p, "motion.gp", "Stresses in motion",
