@@ -1,6 +1,7 @@
 /*
- * Terms of Standard Input Data, against sums over point masses that follow the
- * nodes as a file has them, and the body that they make with its frame.
+ * The terms of a Standard Input Data file equal sums over point masses that
+ * follow the nodes of the file, and together with the six motions of the frame
+ * they give the mass and stiffness of the body.
  */
 #include "testing.h"
 
@@ -41,7 +42,7 @@ static void collect_points(const moving_body *f, const sid_file *file,
     moving_body_points(f, node, out);
 }
 
-/* Value of a matrix at q. */
+/* Entry (i, j) of m0 + sum of m1_k q_k. */
 static double value_at(const sid_taylor *t, int64_t i, int64_t j,
                        const double *q)
 {
@@ -51,10 +52,6 @@ static double value_at(const sid_taylor *t, int64_t i, int64_t j,
         sum += sid_m1(t, i, k, j) * q[k];
     return sum;
 }
-
-/* A dozen products of values below ten at each of 24 points; modes and
-   matrices come from products of a few dozen rows. */
-static const double sum_rounding = 1e5 * DBL_EPSILON;
 
 static void check_rigid(const sid_file *f, const moving_point *n,
                         const double *q)
@@ -80,14 +77,14 @@ static void check_rigid(const sid_file *f, const moving_point *n,
                                    x[a] * u[b] - u[a] * x[b]);
         }
     }
-    assert_near(f->mass, mass, sum_rounding);
+    assert_near(f->mass, mass, moving_rounding);
     for (int a = 0; a < 3; a++)
         assert_near(value_at(&f->of[SID_MDCM], a, 0, q), moment[a],
-                    sum_rounding);
+                    moving_rounding);
     for (int e = 0; e < 6; e++) {
-        assert_near(sid_m0(&f->of[SID_J], e, 0), J[e], sum_rounding);
+        assert_near(sid_m0(&f->of[SID_J], e, 0), J[e], moving_rounding);
         assert_near(value_at(&f->of[SID_J], e, 0, q), J[e] + change[e],
-                    sum_rounding);
+                    moving_rounding);
     }
 }
 
@@ -111,56 +108,47 @@ static void check_couplings(const sid_file *f, const moving_point *n,
                 Me[l] += n[i].m * ritz_dot(n[i].u[k], n[i].u[l]);
         }
         for (int a = 0; a < 3; a++) {
-            assert_near(sid_m0(&f->of[SID_CT], k, a), Ct[a], sum_rounding);
-            assert_near(value_at(&f->of[SID_CR], k, a, q), Cr[a], sum_rounding);
+            assert_near(sid_m0(&f->of[SID_CT], k, a), Ct[a], moving_rounding);
+            assert_near(value_at(&f->of[SID_CR], k, a, q), Cr[a],
+                        moving_rounding);
         }
         for (int l = 0; l < MOVING_MODES; l++)
-            assert_near(sid_m0(&f->of[SID_ME], k, l), Me[l], sum_rounding);
+            assert_near(sid_m0(&f->of[SID_ME], k, l), Me[l], moving_rounding);
     }
 }
 
 /* Ge(q') w + Oe(q) W = sum m u . (2 w x u q' + w x (w x r)) */
 static void check_mode_force(const sid_file *f, const moving_point *n,
-                             const double *q, const double *rate,
-                             const double *w)
+                             const moving_motion *at)
 {
+    const double *w = at->w;
     const double W[6] = {w[0] * w[0], w[1] * w[1], w[2] * w[2],
                          w[0] * w[1], w[1] * w[2], w[0] * w[2]};
 
     for (int k = 0; k < MOVING_MODES; k++) {
-        double force = 0.0, told = 0.0;
+        double force = 0.0;
 
-        for (int i = 0; i < MOVING_POINTS; i++) {
-            double r[3], v[3], wr[3], wwr[3], wv[3];
-
-            moving_place(&n[i], q, r);
-            moving_velocity(&n[i], rate, v);
-            ritz_cross(w, r, wr);
-            ritz_cross(w, wr, wwr);
-            ritz_cross(w, v, wv);
-            force += n[i].m *
-                     (ritz_dot(n[i].u[k], wwr) + 2.0 * ritz_dot(n[i].u[k], wv));
-        }
         for (int64_t l = 0; l < MOVING_MODES; l++)
             for (int a = 0; a < 3; a++)
-                told += sid_m0(&f->of[SID_GE], k, 3 * l + a) * rate[l] * w[a];
+                force +=
+                    sid_m0(&f->of[SID_GE], k, 3 * l + a) * at->rate[l] * w[a];
         for (int e = 0; e < 6; e++)
-            told += value_at(&f->of[SID_OE], k, e, q) * W[e];
-        assert_near(told, force, 10.0 * sum_rounding);
+            force += value_at(&f->of[SID_OE], k, e, at->q) * W[e];
+        assert_near(force, moving_force(n, k, at), 10.0 * moving_rounding);
     }
 }
 
 /* Gr(q') w = sum of 2 x x (w x m u') at q = 0 */
 static void check_torque(const sid_file *f, const moving_point *n,
-                         const double *rate, const double *w)
+                         const moving_motion *at)
 {
-    double torque[3] = {0}, told[3] = {0};
+    double torque[3] = {0}, stated[3] = {0};
 
     for (int i = 0; i < MOVING_POINTS; i++) {
         double v[3], wv[3], xwv[3];
 
-        moving_velocity(&n[i], rate, v);
-        ritz_cross(w, v, wv);
+        moving_velocity(&n[i], at->rate, v);
+        ritz_cross(at->w, v, wv);
         ritz_cross(n[i].x, wv, xwv);
         for (int a = 0; a < 3; a++)
             torque[a] += 2.0 * n[i].m * xwv[a];
@@ -168,28 +156,26 @@ static void check_torque(const sid_file *f, const moving_point *n,
     for (int a = 0; a < 3; a++) {
         for (int64_t l = 0; l < MOVING_MODES; l++)
             for (int b = 0; b < 3; b++)
-                told[a] +=
-                    sid_m0(&f->of[SID_GR], a, 3 * l + b) * rate[l] * w[b];
-        assert_near(told[a], torque[a], 10.0 * sum_rounding);
+                stated[a] += sid_m0(&f->of[SID_GR], a, 3 * l + b) *
+                             at->rate[l] * at->w[b];
+        assert_near(stated[a], torque[a], 10.0 * moving_rounding);
     }
 }
 
 static void check_sums(const moving_body *f, const char *frame,
                        const char *reference)
 {
-    static const double q[MOVING_MODES] = {0.3, -0.2, 0.5, 0.1, -0.4};
-    static const double rate[MOVING_MODES] = {-1.0, 0.5, 0.25, 2.0, 0.75};
-    static const double w[3] = {1.5, -0.5, 0.75};
+    const moving_motion *at = &moving_example;
     RITZ_OWN(sid_file) file = {0};
     moving_point n[MOVING_POINTS] = {0};
 
     write_and_read(f, frame, reference, &file);
     assert_int_equal(file.num_modes, MOVING_MODES);
     collect_points(f, &file, n);
-    check_rigid(&file, n, q);
-    check_couplings(&file, n, q);
-    check_mode_force(&file, n, q, rate, w);
-    check_torque(&file, n, rate, w);
+    check_rigid(&file, n, at->q);
+    check_couplings(&file, n, at->q);
+    check_mode_force(&file, n, at);
+    check_torque(&file, n, at);
 }
 
 static void terms_are_sums_over_points(void **state)
@@ -204,8 +190,9 @@ static void terms_are_sums_over_points(void **state)
    quadratic in q: its central difference of any step is exact. */
 static void centrifugal_forces_are_derivatives_of_energy(void **state)
 {
-    static const double w[3] = {1.5, -0.5, 0.75};
-    double q[MOVING_MODES] = {0.3, -0.2, 0.5, 0.1, -0.4};
+    const double *w = moving_example.w;
+    moving_motion at = moving_example;
+    double *q = at.q;
     const double W[6] = {w[0] * w[0], w[1] * w[1], w[2] * w[2],
                          w[0] * w[1], w[1] * w[2], w[0] * w[2]};
     RITZ_OWN(sid_file) file = {0};
@@ -229,13 +216,15 @@ static void centrifugal_forces_are_derivatives_of_energy(void **state)
         q[k] = middle;
         for (int e = 0; e < 6; e++)
             force += value_at(&file.of[SID_OE], k, e, q) * W[e];
-        assert_near(force, -(energy[1] - energy[0]) / 2.0, 10.0 * sum_rounding);
+        assert_near(force, -(energy[1] - energy[0]) / 2.0,
+                    10.0 * moving_rounding);
     }
 }
 
 /* ---- frames ------------------------------------------------------------- */
 
-/* Mass and stiffness of the body with its frame as the file has them. */
+/* M and K of the body that the file describes, in six motions of the frame and
+   its modes: M = [m, -c~, Ct'; c~, J, Cr'; Ct, Cr, Me], c = mdCM; K has Ke. */
 static void assemble(const sid_file *f, ritz_dense *K, ritz_dense *M)
 {
     const int64_t m = f->num_modes;
@@ -259,7 +248,7 @@ static void assemble(const sid_file *f, ritz_dense *K, ritz_dense *M)
     }
     for (int b = 0; b < 3; b++) {
         const double unit[3] = {b == 0, b == 1, b == 2};
-        double moved[3]; /* mdCM x e_b: column of a in the moments */
+        double moved[3]; /* c x e_b */
 
         ritz_cross(c, unit, moved);
         for (int a = 0; a < 3; a++) {
@@ -274,7 +263,8 @@ static void assemble(const sid_file *f, ritz_dense *K, ritz_dense *M)
         }
 }
 
-/* Whatever the frame: six rigid motions, then those of the component. */
+/* The eigenvalues of the file's body do not depend on the frame: six are zero,
+   the others are those of the reduced component. */
 static void a_free_body_vibrates_as_the_component(void **state)
 {
     const moving_body *f = *state;
@@ -296,7 +286,7 @@ static void a_free_body_vibrates_as_the_component(void **state)
         assemble(&file, &K, &M);
         assert_ok(ritz_eigen_dense(&K, &M, &pairs));
         assert_int_equal(pairs.num_rigid, 6);
-        /* eps times the condition of M, below 1e3, of the largest */
+        /* ten times eps cond(M) lambda_max, with cond(M) below 1e3 */
         for (int64_t k = 6; k < 6 + MOVING_MODES; k++)
             assert_near(pairs.lambda[k], expected.lambda[k],
                         1e4 * DBL_EPSILON * expected.lambda[5 + MOVING_MODES]);
@@ -312,9 +302,9 @@ static void references_hold(void **state)
     assert_non_null(strstr(mean.comment, "reference mean-axis"));
     for (int k = 0; k < MOVING_MODES; k++)
         for (int a = 0; a < 3; a++) {
-            assert_near(sid_m0(&mean.of[SID_CT], k, a), 0.0, sum_rounding);
-            assert_near(sid_m0(&mean.of[SID_CR], k, a), 0.0, sum_rounding);
-            assert_near(sid_m0(&mean.of[SID_MDCM], a, 0), 0.0, sum_rounding);
+            assert_near(sid_m0(&mean.of[SID_CT], k, a), 0.0, moving_rounding);
+            assert_near(sid_m0(&mean.of[SID_CR], k, a), 0.0, moving_rounding);
+            assert_near(sid_m0(&mean.of[SID_MDCM], a, 0), 0.0, moving_rounding);
         }
     write_and_read(f, "22", NULL, &tangent);
     assert_non_null(strstr(tangent.comment, "reference tangent"));
@@ -323,8 +313,8 @@ static void references_hold(void **state)
             const sid_node *node = &tangent.node[1];
 
             assert_true(sid_m0(&node->at[SID_ORIGIN], a, 0) == 0.0);
-            assert_near(sid_m0(&node->at[SID_PHI], a, k), 0.0, sum_rounding);
-            assert_near(sid_m0(&node->at[SID_PSI], a, k), 0.0, sum_rounding);
+            assert_near(sid_m0(&node->at[SID_PHI], a, k), 0.0, moving_rounding);
+            assert_near(sid_m0(&node->at[SID_PSI], a, k), 0.0, moving_rounding);
         }
 }
 
