@@ -45,6 +45,7 @@ foreach(folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
             list(APPEND seen ${file})
             style_stamp(tidy ${file}
                 "${PROJECT_SOURCE_DIR}/.clang-tidy;\
+${CMAKE_CURRENT_SOURCE_DIR}/unit/.clang-tidy;\
 ${binary}/CMakeFiles/${target}.dir/${name}.o"
                 ${CLANG_TIDY} --quiet -p ${PROJECT_BINARY_DIR} ${file})
         endforeach()
