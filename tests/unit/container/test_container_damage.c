@@ -12,12 +12,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#ifdef RITZ_SANITIZE
-enum { SEEDS = 200 }; /* three times slower; ./bootstrap fuzz has millions */
-#else
-enum { SEEDS = 600 };
-#endif
-enum { CUTS = 60, MOST = 1 << 18 };
+/* Damages of each kind of object; ./bootstrap fuzz makes millions. */
+enum { SEEDS = 200, CUTS = 60, MOST = 1 << 18 };
 
 static const char path[] = "test_container_damage.h5";
 static const char again[] = "test_container_damage_again.h5";
@@ -51,7 +47,8 @@ static void store(const unsigned char *bytes, size_t size)
     fclose(file);
 }
 
-/* Read what is stored: refused with a sentence, or all values are right. */
+/* Read the stored file and write its object again. True if the file is refused,
+   with a sentence; otherwise the copy must equal the undamaged file. */
 static bool is_found(const sample_kind *kind, const unsigned char *whole,
                      size_t size)
 {
@@ -68,14 +65,14 @@ static bool is_found(const sample_kind *kind, const unsigned char *whole,
     return false;
 }
 
-/* As good as any: multiplier and increment of the C standard's own example. */
+/* Linear congruential numbers, with the constants of rand() in the C standard. */
 static uint32_t next(uint32_t *seed)
 {
     *seed = *seed * 1103515245U + 12345U;
     return *seed >> 8;
 }
 
-/* In one to three places; the seed is said when a value has changed. */
+/* One to three bytes are changed. */
 static void damage_is_found_or_harmless(void **)
 {
     static unsigned char whole[MOST];
@@ -117,7 +114,7 @@ static void a_file_cut_short_is_refused(void **)
     }
 }
 
-/* The smallest of them, cut at every byte. */
+/* The smallest of the samples is cut at every byte. */
 static void a_small_file_cut_at_any_byte_is_refused(void **)
 {
     static unsigned char whole[MOST];
