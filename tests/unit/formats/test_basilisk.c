@@ -48,7 +48,7 @@ static ritz_status make_body(ritz_reduced *out)
     return RITZ_OK;
 }
 
-/* Six motions of a grid, which are the first coordinates. */
+/* Attach the six motions of the grid as the first coordinates. */
 static ritz_status add_port(ritz_reduced *out)
 {
     ritz_port_map *port = calloc(1, sizeof *port);
@@ -94,7 +94,7 @@ static ritz_status write_module(const ritz_reduced *body, const char *path,
                                         &request, report);
 }
 
-/* The numbers behind a word of a text, from `from` on. */
+/* Read the numbers that follow a word of the text, from `from` on. */
 static const char *read_numbers(const char *from, const char *word, int count,
                                 double *out)
 {
@@ -155,8 +155,9 @@ static void modes_become_springs_and_spinning_bodies(void **state)
                                            "not act on the hub"));
 }
 
-/* Of the mass of 20 the spring takes 3 at x = 2; of the inertia of 30 about the
-   grid the spinning body takes 2 about x, and the spring 12 about y and z. */
+/* The hub has the mass of the body without the 3 on the spring at x = 2, and
+   its inertia about the grid without the 2 of the spinning body about x and the
+   12 of the mass on the spring about y and z. */
 static void the_hub_keeps_the_rest(void **state)
 {
     const double mass = 17.0, centre[3] = {-6.0 / 17.0, 0, 0};

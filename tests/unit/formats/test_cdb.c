@@ -31,7 +31,7 @@ static ritz_status parse(const char *text, ritz_deck *out)
     return ritz_deck_parse("a.cdb", text, (int64_t)strlen(text), ".", out);
 }
 
-/* `nodes` and then more lines. */
+/* Parse a database of `nodes` followed by more lines. */
 static ritz_status parse_with(const char *more, ritz_deck *out)
 {
     char text[4096];
@@ -76,7 +76,7 @@ static void angles_follow_each_other(void **state)
         assert_near(deck.grids.axes[9 + k], expected[k], 4 * DBL_EPSILON);
 }
 
-/* Whether cell k has this kind and these grids. */
+/* Check the kind and the grids of cell k. */
 static void assert_cell(const ritz_deck *deck, int64_t k, ritz_cell kind,
                         int64_t count, const int64_t *grid)
 {

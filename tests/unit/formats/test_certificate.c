@@ -1,4 +1,5 @@
-/* The certificate of a model, and how comments are cut into lines. */
+/* The error certificate of a model, and the lines into which comments are
+   broken. */
 #include "formats/certificate.h"
 #include "testing.h"
 
@@ -6,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The comments of a text as they are in a file. */
+/* The text as comment lines of at most `width` bytes that begin with
+   `before`. */
 static char *comments(const char *before, int width, const char *text)
 {
     char *out = NULL;
@@ -39,7 +41,7 @@ static void long_lines_are_cut_at_blanks_and_between_letters(void **state)
     assert_comments(4, "", "");
 }
 
-/* A reduced component of which everything is known. */
+/* A reduced component with every entry that a certificate can have. */
 static void fill(ritz_reduced *r)
 {
     assert_ok(ritz_dense_new(2, 2, &r->K));
@@ -122,7 +124,7 @@ static void an_xml_comment_has_no_markup(void **state)
     free(out);
 }
 
-/* Shapes of a component that is not reduced have inputs and a command. */
+/* The certificate of shapes of a full component has inputs and command only. */
 static void other_objects_have_inputs_and_command(void **state)
 {
     const ritz_stamp stamp = {.command = "ritz-export --to vtu rotor.h5"};

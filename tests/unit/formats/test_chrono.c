@@ -39,7 +39,7 @@ static ritz_status write_load(const ritz_reduced *reduced, const char *ports,
                                       &request, report);
 }
 
-/* Words apart by blanks and ends of lines, of which '#' begins a comment. */
+/* The next word; '#' begins a comment that ends with its line. */
 static const char *next_word(FILE *file)
 {
     static char word[64];

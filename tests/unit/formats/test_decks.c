@@ -1,4 +1,4 @@
-/* Decks as the rest of the house sees them, whatever format they are in. */
+/* Decks through ritz_deck_parse(), which recognises their format. */
 #include "testing.h"
 
 #include <ritz/import.h>

@@ -34,7 +34,7 @@ typedef struct flex_body {
     double NomPosB[NODES][3];
 } flex_body;
 
-/* The rest of a line, and the blanks after it, as " %[^\n] %[\n]" takes it. */
+/* Skip the rest of a line as scanf(" %[^\n] %[\n]") of 42 does. */
 static void take_rest(FILE *file)
 {
     char rest[4 * REST] = "";
@@ -204,7 +204,7 @@ static void take_nodes(FILE *file, flex_body *b)
     assert_int_equal(fgetc(file), EOF);
 }
 
-/* The text behind "[EOF]", which the caller frees. */
+/* Write and read a body. Returns the text behind "[EOF]", to be freed. */
 static char *read_body(const char *frame, const char *reference,
                        const moving_body *of, flex_body *b)
 {
@@ -227,7 +227,7 @@ static char *read_body(const char *frame, const char *reference,
     return rest;
 }
 
-/* Numbers of the line of the rest that ends in these words. */
+/* The numbers on the line of `rest` that ends in these words. */
 static void find_numbers(const char *rest, const char *words, int count,
                          double *out)
 {

@@ -35,7 +35,7 @@ static ritz_status put_values(const double *value, ritz_dense *out)
     return RITZ_OK;
 }
 
-/* Coordinates are grid 12 T3, a mode, and grid 11 T1. */
+/* The coordinates are grid 12 T3, a mode and grid 11 T1. */
 static ritz_status make_small(const double *K, const double *M,
                               ritz_reduced *out)
 {
@@ -133,7 +133,7 @@ static void read_card(const char *path, const char *card, ritz_matrix *out)
     assert_ok(foreign_select(spec, out));
 }
 
-/* Relative error that the layout of a number of this size may leave. */
+/* Relative error of a number in a field of 16 columns, by its size and sign. */
 static double bound_of(double x)
 {
     const double size = fabs(x);

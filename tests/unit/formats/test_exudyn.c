@@ -23,7 +23,7 @@ static const double places[6] = {1.0, -2.0, 0.5, 4.0, -2.0, 0.5};
 static const double axes[18] = {1.0, 0.0,  0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0,
                                 0.8, -0.6, 0.0, 0.6, 0.8, 0.0, 0.0, 0.0, 1.0};
 
-/* Motion of node i along basic axis a in mode k: all distinct. */
+/* Motion of node i along basic axis a in mode k; all numbers are distinct. */
 static double shape(int64_t k, int64_t i, int64_t a)
 {
     return (double)(1 + 5 * k * k - 7 * i + (3 + k) * a * a) / 8.0;
@@ -69,7 +69,7 @@ static ritz_status make_pair(bool turned, double k, ritz_component *out)
     return ritz_component_settle(out, false);
 }
 
-/* The modes above along the displacement axes of the grids. */
+/* The modes of shape() along the displacement axes of the grids. */
 static void make_shapes(const ritz_component *pair, ritz_dense *T)
 {
     assert_ok(ritz_dense_new(6, MODES, T));
@@ -170,7 +170,7 @@ static void axes_of_displacements_change_no_term(void **state)
     check_terms(true);
 }
 
-/* The whole space as basis. */
+/* Use the identity as basis. */
 static ritz_status reduce(const ritz_component *component, ritz_reduced *out)
 {
     RITZ_OWN(ritz_basis) basis = {0};
@@ -505,7 +505,7 @@ static void a_second_projection_takes_invariants_along(void **state)
                     1e4 * DBL_EPSILON);
 }
 
-/* Each spoils one thing. */
+/* What is wrong with an otherwise sound body. */
 enum {
     NO_BASIS,
     NO_GRIDS,

@@ -1,4 +1,5 @@
-/* The program of FMUs, by both versions of FMI, on models of closed form. */
+/* The program inside FMUs, called by FMI 2 and FMI 3, on models whose motion
+   has a closed form. */
 #include "fmu_driver.h"
 #include "folder.h"
 #include "testing.h"
@@ -14,10 +15,11 @@
 
 enum { ROOM = 4096 };
 
-static const double near = 1e3 * DBL_EPSILON; /* of sums of a few dozen terms */
+static const double near =
+    1e3 * DBL_EPSILON; /* rounding of sums of a few dozen terms */
 
-/* One input, one output, one block. References: 1 the input, 2 the output, 3
-   and so on the states. */
+/* Models have one input (value reference 1), one output (2), and the states
+   (3, 4, ...) of one block. */
 static void write_one(int64_t size, int64_t states, const double *number,
                       int64_t count)
 {
@@ -41,7 +43,7 @@ static void write_oscillator(double lambda, double d, double b)
     write_one(0, 2, number, 9);
 }
 
-/* The same as a dense block. */
+/* The same oscillator as a dense block. */
 static void write_dense(double lambda, double d, double b)
 {
     const double number[] = {0.0, -lambda, 1.0, -d,  0.0, b,
@@ -56,7 +58,7 @@ static void open_here(int fmi, bool steps, fmu_driver *d)
         fail_msg("%s", d->said);
 }
 
-/* q and q' after some steps from q0, v0 with a held force. */
+/* Simulate steps from q0 and v0 under a constant force. Gives q and q'. */
 static void march_once(int fmi, const double start[2], double force, double h,
                        int steps, double end[2])
 {
@@ -76,7 +78,8 @@ static void march_once(int fmi, const double start[2], double force, double h,
     fmu_close(&d);
 }
 
-/* Whatever lambda, d and h: as an oscillator and as a dense block. */
+/* The closed form holds for any lambda, d and h, as an oscillator and as a
+   dense block. */
 static void assert_motion(double lambda, double d, double force, double h,
                           const double expected[2], double bound)
 {
@@ -187,7 +190,7 @@ static void a_dashpot_ends_rigid_motion(void **state)
     }
 }
 
-/* An unstable one, which --force exports. */
+/* An unstable oscillator, which ritz-export writes only with --force. */
 static void a_negative_stiffness_grows(void **state)
 {
     const double w = 1.5;
@@ -202,7 +205,7 @@ static void a_negative_stiffness_grows(void **state)
                   1e2 * near);
 }
 
-/* A chain of integrators is as defective as three states can be. */
+/* A chain of three integrators: one eigenvector for three states. */
 static void three_integrators_make_a_cubic(void **state)
 {
     /* A by columns, B, C, D, nominals */

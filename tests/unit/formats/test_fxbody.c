@@ -1,8 +1,8 @@
 /*
- * Flexible bodies for Radioss, read here in the order and the columns of
- * OpenRadioss's starter [OpenRadioss2026, hm_read_fxb.F]; lines that begin with
- * '#' are comments. What the file says of inertia is compared with sums over
- * point masses that follow the nodes.
+ * Flexible bodies for Radioss. The tests read them in the order and the columns
+ * of OpenRadioss's starter [OpenRadioss2026, hm_read_fxb.F], where lines that
+ * begin with '#' are comments, and compare the inertia terms of a file with sums
+ * over point masses that follow its nodes.
  */
 #include "testing.h"
 
@@ -212,16 +212,19 @@ static void write_and_read(const moving_body *of, const char *frame,
 
 /* ---- motions ------------------------------------------------------------ */
 
-/* Numbers have 13 digits and are below ten; sums are of a few dozen. */
+/* Error of a sum of a few dozen terms, whose factors are below ten and have 13
+   digits in the file. */
 static const double digits = 1e-10;
 
-/* The three columns of a rotation, and how the body moves. */
+/* Two orientations P of the frame: as it is written, and turned. */
 static const double turned[9] = {0.8,  -0.6, 0.0,  0.48, 0.64,
                                  -0.6, 0.36, 0.48, 0.8}; /* by rows */
 static const double straight[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+
+/* The motion: velocity of the origin, angular velocity, rates of the modes. */
 static const double v0[3] = {0.5, -1.0, 2.0};
-static const double w[3] = {1.5, -0.5, 0.75};
-static const double rate[MODES] = {-1.0, 0.5, 0.25, 2.0, 0.75};
+static const double *const w = moving_example.w;
+static const double *const rate = moving_example.rate;
 
 static void turn(const double *P, const double *x, double out[static 3])
 {
@@ -229,7 +232,8 @@ static void turn(const double *P, const double *x, double out[static 3])
         out[k] = ritz_dot(P + 3 * k, x);
 }
 
-/* Velocities of the points of the frame when it is at P; rotations follow. */
+/* Rates of the global modes while the frame has the orientation P: velocities of
+   its origin and of the ends of its three axes, then the angular velocity. */
 static void move_frame(const double *P, double q[static GLOBAL])
 {
     for (int i = 0; i < 4; i++) {
@@ -241,10 +245,11 @@ static void move_frame(const double *P, double q[static GLOBAL])
         for (int a = 0; a < 3; a++)
             q[3 * i + a] = v0[a] + spun[a];
     }
-    memcpy(q + 12, w, sizeof w);
+    memcpy(q + 12, w, 3 * sizeof *w);
 }
 
-/* Positions, from the frame, are amplitudes of the first nine modes. */
+/* A global mode moves a node by a coordinate of its position x: the first nine
+   modes give x in the axes of the frame. */
 static void collect_nodes(const fx_file *f, moving_node *out)
 {
     for (int n = 0; n < NODES; n++)
@@ -266,7 +271,8 @@ static void collect_points(const moving_body *of, const fx_file *f,
     moving_body_points(of, node, out);
 }
 
-/* Global modes move nodes as a rigid body, and turn them. */
+/* With the rates of a rigid motion, the global modes give each node the velocity
+   v0 + w x r and the angular velocity w. */
 static void global_modes_hold_rigid_motion(void **state)
 {
     RITZ_OWN(fx_file) f = {0};
@@ -317,7 +323,8 @@ static void rigid_inertia_is_that_of_the_points(void **state)
     assert_near(energy, expected, 10.0 * digits);
 }
 
-/* q'M_C alpha' with the frame at P, against the momentum of the points. */
+/* q'M_C(P) alpha' = sum of m (v0 + w x P r) . P u for the velocity u of the
+   modes. */
 static void check_coupling(const fx_file *f, const moving_point *point,
                            const double *P)
 {
@@ -358,8 +365,8 @@ static void modes_have_their_momentum_wherever_the_frame_is(void **state)
 
 /* ---- forces ------------------------------------------------------------- */
 
-/* The power of P K Phi in a rigid motion of the frame: its modes of the model
-   itself, not of the file. */
+/* Power of the elastic forces P K phi of a mode in a rigid motion of the frame.
+   K is that of the model; the file has none at grids. */
 static double power_of(const ritz_dense *K, const fx_file *f,
                        const moving_node *node, int mode)
 {
@@ -384,7 +391,8 @@ static double power_of(const ritz_dense *K, const fx_file *f,
     return power;
 }
 
-/* K_C has no other effect than this power, so that it may be zero. */
+/* K_C enters the equations by this power alone. As the power is zero, K_C may be
+   zero as well. */
 static void deformation_does_no_work_in_rigid_motion(void **state)
 {
     const moving_body *of = *state;
@@ -404,10 +412,11 @@ static void deformation_does_no_work_in_rigid_motion(void **state)
                 assert_true(f.K_C[k][p][i] == 0.0);
 }
 
-/* The free body of Radioss at rest: points of the frame move as it does. */
+/* M and K of the free body near P = I, in six rigid motions and its local modes.
+   R has the rates of the global modes in each rigid motion. */
 static void assemble(const fx_file *f, ritz_dense *K, ritz_dense *M)
 {
-    double R[GLOBAL][6] = {{0}}; /* of six rigid motions */
+    double R[GLOBAL][6] = {{0}};
 
     for (int p = 0; p < 12; p++) {
         const double arm[3] = {p / 3 == 0, p / 3 == 1, p / 3 == 2};
@@ -430,7 +439,7 @@ static void assemble(const fx_file *f, ritz_dense *K, ritz_dense *M)
             for (int b = 0; b < 6; b++)
                 for (int q = 0; q < GLOBAL; q++)
                     ritz_dense_col(M, b)[a] += R[p][a] * f->M_R[p][q] * R[q][b];
-            for (int k = 0; k < 9; k += 4) /* P = I */
+            for (int k = 0; k < 9; k += 4) /* entries of P = I that are 1 */
                 for (int i = 0; i < MODES; i++) {
                     ritz_dense_col(M, 6 + i)[a] += R[p][a] * f->M_C[k][p][i];
                     ritz_dense_col(M, a)[6 + i] += R[p][a] * f->M_C[k][p][i];
@@ -478,11 +487,11 @@ static ritz_status write_body(const ritz_reduced *reduced, const char *path,
                                       &request, report);
 }
 
-/* All dofs of the chain as basis, with springs on some of the first grid. */
+/* Reduce with the identity as basis, with springs to ground at the first dofs. */
 static ritz_status hold_chain(const moving_body *of, int64_t springs,
                               ritz_reduced *out)
 {
-    ritz_component held = of->body; /* borrowed but for K */
+    ritz_component held = of->body; /* its own is K alone */
     RITZ_OWN(ritz_sparse) K = {0};
     RITZ_OWN(ritz_dense) dense = {0};
     RITZ_OWN(ritz_basis) basis = {0};
@@ -526,7 +535,7 @@ static bool says(const ritz_export_report *report, const char *words)
     return false;
 }
 
-/* D = K of the body. */
+/* The body has D = K: alpha = 0 and beta = 1. */
 static void damping_is_that_of_rayleigh(void **state)
 {
     const moving_body *of = *state;

@@ -1,4 +1,4 @@
-/* Coordinates over time in files of simulators. */
+/* Histories of coordinates that are read from files of simulators. */
 #include "testing.h"
 
 #include "damage.h"
@@ -11,7 +11,7 @@
 
 enum { MOST = 8 };
 
-/* What a history holds, time by time. */
+/* A history in memory: all of its times. */
 typedef struct held {
     int64_t count;
     double seconds[MOST], q[MOST][4], v[MOST][4], a[MOST][4], f[MOST][2];
@@ -49,14 +49,14 @@ static ritz_status read_all(const char *path,
     }
 }
 
-/* The head is that of a sensor of Exudyn 1.13. */
+/* A file of a sensor, with the head that Exudyn 1.13 writes. */
 static const char sensor[] =
     "#Exudyn Sensor 'coordinates', file format version 1\n"
     "#time,values\n"
     "0.000000,1.,2.,10.,20.,100.,200.\n"
     "0.5,-1.,-2.,-10.,-20.,-100.,-2e2\n";
 
-/* What FMPy's write_csv gives. */
+/* A table as FMPy's write_csv writes it. */
 static const char named[] = "\"time\",\"v[1]\",\"q[1]\",\"q[2]\",\"v[2]\","
                             "\"push\"\n"
                             "0.0,10,1,2,20,7\n"
@@ -168,7 +168,8 @@ static void modes_of_mbdyn_come_by_body(void **)
                  "has columns of its own");
 }
 
-/* q = V x of coordinates, rates and accelerations alike. */
+/* A matrix V of the user turns coordinates x of a file into q = V x, and
+   their rates and accelerations likewise. */
 static void coordinates_are_transformed(void **)
 {
     double values[6] = {1.0, 0.0, 2.0, 0.0, -1.0, 3.0};
@@ -219,7 +220,7 @@ static void what_is_no_history_is_refused(void **)
                  RITZ_ERR_FILE, "cannot be opened");
 }
 
-/* Any bytes end in success or a sentence. */
+/* Whatever the bytes, reading succeeds or is refused with a sentence. */
 static ritz_status read_bytes(const char *bytes, int64_t size)
 {
     const ritz_history_request request = of_two();

@@ -1,8 +1,9 @@
 /*
- * Bodies for MBDyn. Files are read here by the rules of its manual and of
- * mbdyn/struct/modal.cc [MBDyn2017]: lines "** RECORD GROUP n" open groups,
- * whose numbers follow in any lines; each mode has a line of its own before it.
- * Invariants of inertia are summed over nodes as the manual defines them.
+ * Bodies for MBDyn. The tests read them by the rules of its manual and of
+ * mbdyn/struct/modal.cc [MBDyn2017]: a line "** RECORD GROUP n" opens a group,
+ * whose numbers follow on any number of lines, and a line precedes each mode.
+ * They sum the invariants of inertia over the nodes of a file, as the manual
+ * defines them, and compare them with those of the body.
  */
 #include "testing.h"
 
@@ -28,9 +29,9 @@ enum {
     LINE = 8192,
 };
 
-/* What a reader takes from a file. */
+/* The contents of a file. */
 typedef struct fem_data {
-    const char *at; /* of the text, where it is read */
+    const char *at; /* what is left of the text */
     bool has[GROUPS];
     int nodes, modes;
     char label[NODES][LABEL];
@@ -42,7 +43,7 @@ typedef struct fem_data {
 
 /* ---- the reader --------------------------------------------------------- */
 
-/* The rest of the line; false at the end. A longer line stops MBDyn. */
+/* The next line; false at the end of the file. MBDyn stops at a longer line. */
 static bool get_line(fem_data *f, char line[LINE])
 {
     size_t length = strcspn(f->at, "\n");
@@ -247,7 +248,7 @@ static void add_node(int modes, double m, const double x[3], double (*U)[3],
     }
 }
 
-/* Over the nodes of a file; no node has rotary inertia. */
+/* Sum over the nodes of a file, none of which has rotary inertia. */
 static void sum_nodes(const fem_data *f, fem_invariants *of)
 {
     double U[MODES][3];
@@ -264,7 +265,8 @@ static void sum_nodes(const fem_data *f, fem_invariants *of)
     }
 }
 
-/* To 1e-12 of what the terms can be: modes have unit mass, positions 2 m. */
+/* Terms agree to 1e-12 of their largest size: modes have unit mass, and nodes
+   lie within 2 m. */
 static void assert_same(const double *found, const double *expected,
                         size_t count, double size)
 {
@@ -405,7 +407,7 @@ static ritz_status write_model(const ritz_reduced *reduced,
                                      &request, report);
 }
 
-/* The file of a body in a frame, and what it should be made of. */
+/* Write the body in a frame, read the file, and make the same floating body. */
 static void write_and_read(const ritz_reduced *reduced, const char *frame,
                            const char *reference, fem_data *f,
                            ritz_floating *body)
@@ -461,8 +463,8 @@ static void mbdyn_reads_every_bit(void **state)
     assert_string_equal(f.label[GRIDS], "inertia1");
 }
 
-/* Of masses at grids all is known: the file gives what they give, in each
-   frame. Modes are those of the file, at its grids. */
+/* Where all mass is at the grids, the invariants are known: sums over these
+   masses with the modes of the file, in each frame. */
 static void invariants_are_those_of_the_masses(void **state)
 {
     static const char *const frames[][2] = {
@@ -526,9 +528,9 @@ static void assert_momenta(const fem_data *f, const ritz_floating *body)
     }
 }
 
-/* Rotations of grids have inertia too: mass, inertia and momenta are those of
-   all of M, products those that the body holds. Free modes have no momentum,
-   those of a tangent frame have. */
+/* Grids that turn have rotary inertia: mass, inertia and momenta of a file are
+   those of the whole M, and products those of the invariants. Modes of the free
+   body have no momentum; modes in a tangent frame have. */
 static void inertia_of_rotations_counts(void **state)
 {
     const fixture *s = *state;
@@ -556,7 +558,8 @@ static void a_tangent_frame_holds_its_grid(void **state)
             assert_near(f.psi[j][2][a], 0.0, 1e-12);
 }
 
-/* A command can hold any words, which must not open a record group. */
+/* The certificate quotes the command, which may contain any words; these must
+   not open a record group. */
 static void the_certificate_is_in_comments(void **state)
 {
     const fixture *s = *state;

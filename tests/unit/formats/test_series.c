@@ -1,5 +1,8 @@
-/* Shapes over time: what frames hold, and what is left of a series that fails.
- * meshio reads them in tests/tools/recover.sh. */
+/*
+ * Series of displaced shapes with stresses, one frame for each time. The tests
+ * check the numbers in each frame, and that a series that cannot be finished
+ * leaves no file. meshio reads such series in tests/tools/recover.sh.
+ */
 #include "testing.h"
 
 #include "damage.h"
@@ -11,7 +14,8 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-/* Two masses on a line, elements 7 (of grids 1, 2) and 9 (of grid 2, 3). */
+/* A line of grids 1, 2 and 3 with element 7 from 1 to 2 and element 9 from 2
+   to 3. */
 static void make_body(ritz_reduced *out)
 {
     static const int64_t grid[] = {1, 2, 2, 3};
@@ -119,7 +123,7 @@ static void expect(const char *path, const char *words)
         fail_msg("'%s' lacks '%s':\n%s", path, words, text);
 }
 
-/* An unfinished series leaves nothing. */
+/* A series that is freed before it is finished leaves no file. */
 static void collections_list_their_frames(void **)
 {
     RITZ_OWN(ritz_reduced) body = {0};
@@ -201,7 +205,7 @@ static void maxima_are_a_table(void **)
     expect(path, "\t0.10000000000000001\t0.25\n");
 }
 
-/* What pictures take of a collection is what was written. */
+/* Charts of motion read a collection back: frames have the numbers written. */
 static void frames_are_read_back(void **)
 {
     RITZ_OWN(ritz_reduced) body = {0};
@@ -251,7 +255,7 @@ static const char one[] =
     "<DataArray Name=\"offsets\">\n2\n</DataArray>\n"
     "<DataArray Name=\"types\">\n3\n</DataArray>\n</Piece>\n";
 
-/* The text with one piece of it replaced. */
+/* Replace one piece of the text. */
 static void refuse_with(const char *piece, const char *by, const char *words)
 {
     const char *at = strstr(one, piece);
@@ -316,7 +320,8 @@ static void damaged_frames_are_refused(void **)
     assert_survives_every_allocation(parse_once());
 }
 
-/* Frames get their names at once; a failure takes them away. */
+/* Frames of a collection are published as they are written, so that a failure
+   has to remove them and their folder. */
 static void all_allocations_may_fail(void **)
 {
     RITZ_OWN(ritz_reduced) body = {0};

@@ -170,8 +170,8 @@ static ritz_status reduce_stretch(ritz_reduced *out)
     return ritz_reduce(&body, &basis, out);
 }
 
-/* Equal but for rounding, where a mode of the other sign turns that of an odd
-   power of q; every value is below 5. */
+/* Compare two matrices whose values are below 5, to rounding. If the sign of
+   the mode differs, terms with an odd power of q change their sign. */
 static void assert_taylor(const sid_taylor *a, const sid_taylor *b, double sign,
                           bool odd)
 {

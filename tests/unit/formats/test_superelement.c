@@ -76,7 +76,8 @@ static ritz_status make_port(ritz_reduced *out)
                                      &out->recovery.G);
 }
 
-/* Coordinates are grid 12 T3, a mode, and grid 11 T1. The mode moves 13 T2. */
+/* The coordinates are grid 12 T3, a mode and grid 11 T1. The mode moves 13
+   T2. */
 static ritz_status make_small(ritz_reduced *out)
 {
     static const ritz_dof dof[] = {{11, 1}, {12, 3}, {13, 2}, {13, 3}};
@@ -126,7 +127,7 @@ static bool says(const ritz_export_report *report, const char *words)
     return false;
 }
 
-/* The cards of a deck without its comments. */
+/* Read a deck and leave out its comments. */
 static char *cards_of(const char *name)
 {
     char *text = NULL;
@@ -236,7 +237,7 @@ static double value(const ritz_matrix *m, int64_t i, int64_t j)
     return matrix_entry(&m->A, m->A.val, i, j);
 }
 
-/* In the order 11 T1, 12 T3, 1001, of the coordinates 2, 0, 1. */
+/* Rows are in the order 11 T1, 12 T3, 1001: coordinates 2, 0, 1. */
 static void check_matrices(const ritz_reduced *small, const char *path)
 {
     static const int64_t place[] = {2, 0, 1};
@@ -290,7 +291,7 @@ static void matrices_come_back_in_every_bit(void **state)
     }
 }
 
-/* Grid 11 becomes a scalar point. */
+/* The body is the small one with a scalar point in place of grid 11. */
 static void scalar_points_may_be_attached(void **state)
 {
     RITZ_OWN(ritz_reduced) small = {0};
@@ -330,7 +331,7 @@ static void few_digits_are_said_to_round(void **state)
     assert_true(value(&K, 0, 1) == -0.333333333);
 }
 
-/* A bar by craig-bampton, written, imported and compared. */
+/* A bar that craig-bampton reduced is written, imported again and compared. */
 static void a_bar_comes_back_as_it_was(void **state)
 {
     RITZ_OWN(ritz_component) bar = {0}, back = {0};
