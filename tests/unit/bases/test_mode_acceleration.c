@@ -1,4 +1,4 @@
-/* Quantities in a basis: mode displacement and mode acceleration. */
+/* Mode displacement and mode acceleration of quantities y = S u. */
 #include "testing.h"
 
 #include "bar.h"
@@ -13,7 +13,7 @@
 
 enum { ELEMENTS = 12, DOFS = ELEMENTS + 1 };
 
-/* Rows of y = S u for one quantity; entries are put by put_entry(). */
+/* A quantity y = S u with zero rows, which put_entry() fills. */
 typedef struct rows {
     int64_t count, entries;
     int64_t row[4 * DOFS], col[4 * DOFS];
@@ -74,7 +74,7 @@ static void add_port(int64_t dof, ritz_component *c)
     c->port[0].axes[0] = c->port[0].axes[4] = c->port[0].axes[8] = 1.0;
 }
 
-/* A bar with stresses, pushed at its right end. */
+/* A bar with the stresses of its elements and a force at its right end. */
 static void make_bar(ritz_component *out)
 {
     const rows stress = stresses(DOFS, 1.0 / ELEMENTS);
@@ -96,7 +96,7 @@ static ritz_dense identity(int64_t n)
     return T;
 }
 
-/* Reduce in the first columns of T. */
+/* Reduce with the first columns of T as basis. */
 static void reduce(const ritz_component *c, const ritz_dense *T,
                    const char *ports, ritz_reduced *out,
                    ritz_mode_accelerations *made)
@@ -127,11 +127,12 @@ static const double solve_error =
     DOFS * DBL_EPSILON * ELEMENTS * ELEMENTS * ELEMENTS;
 
 /*
- * A force at one end of a free bar accelerates it, and is carried where there
- * is mass behind: sigma = F m / m_all, whatever mode is kept. With consistent
- * mass of linear elements the stress of an element is that at its middle.
+ * A force F at one end of a free bar accelerates it as a rigid body, so that a
+ * section carries F m / m_all, where m is the mass behind it. Mode acceleration
+ * gives this stress whatever modes are kept. With a consistent mass the stress
+ * of a linear element is that at its middle.
  */
-static void a_free_bar_is_pulled_as_its_mass_is(void **)
+static void a_free_bar_has_the_stress_of_the_mass_behind(void **)
 {
     RITZ_OWN(ritz_component) bar = {0};
     RITZ_OWN(ritz_reduced) reduced = {0};
@@ -155,8 +156,9 @@ static void a_free_bar_is_pulled_as_its_mass_is(void **)
                     push * ((double)k + 0.5) / ELEMENTS, push * solve_error);
 }
 
-/* Held at its left end by a port, whose force is not known, the bar carries the
-   push through all elements: in a basis that holds no part of it. */
+/* The bar is held at its left end by a port, whose force is not known. The
+   force at its right end gives all elements the same stress, which mode
+   acceleration finds in a basis whose columns contain no part of it. */
 static void a_held_bar_is_pulled_alike_everywhere(void **)
 {
     RITZ_OWN(ritz_component) bar = {0};
@@ -246,8 +248,8 @@ static void a_square_basis_gives_the_stresses_of_its_motion(void **)
                     u.val[k + 1] - u.val[k], 100.0 * 1e2 * DBL_EPSILON);
 }
 
-/* Rows that follow rigid motion are refused, and so are accelerations; others
-   beside them are not. */
+/* Mode acceleration is refused to rows that follow rigid motion and to
+   accelerations; other quantities of the same model get it. */
 static void rows_that_follow_rigid_motion_are_left_out(void **)
 {
     RITZ_OWN(ritz_component) bar = {0};
@@ -294,8 +296,8 @@ static void what_makes_no_sense_is_refused(void **)
                  RITZ_ERR_ARGUMENT, "no rows to recover");
 }
 
-/* S T of every method that makes second-order models, and again after a second
-   projection. */
+/* Each method that makes second-order models has the rows S T, and S T T_2
+   after a second projection T_2. */
 static void every_method_carries_rows(void **)
 {
     int64_t attached[] = {0};
@@ -332,7 +334,8 @@ static void every_method_carries_rows(void **)
     assert_true(carried >= 10);
 }
 
-/* All matrices follow a projection; what drives them stays. */
+/* A projection multiplies all matrices that act on coordinates; those of
+   inputs and dampers stay. */
 static void mode_acceleration_is_projected(void **)
 {
     RITZ_OWN(ritz_component) bar = {0};
@@ -357,7 +360,8 @@ static void mode_acceleration_is_projected(void **)
     assert_null(again.quantity->V.val);
 }
 
-/* A whole reduction, so that nothing of one try stays for the next. */
+/* Each try makes the whole reduction, so that it starts without results of
+   the last. */
 static ritz_status reduce_once(const ritz_component *bar,
                                const ritz_basis *basis)
 {
@@ -406,7 +410,7 @@ static void quantities_that_do_not_fit_are_refused(void **)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(a_free_bar_is_pulled_as_its_mass_is),
+    cmocka_unit_test(a_free_bar_has_the_stress_of_the_mass_behind),
     cmocka_unit_test(a_held_bar_is_pulled_alike_everywhere),
     cmocka_unit_test(a_square_basis_gives_the_stresses_of_its_motion),
     cmocka_unit_test(rows_that_follow_rigid_motion_are_left_out),

@@ -1,4 +1,5 @@
-/* Containers of maxima over time; quantities that do not fit their model. */
+/* Containers of recovered maxima, and refusals of quantities that do not fit
+   their model. */
 #include "testing.h"
 
 #include "sample_quantities.h"
@@ -41,7 +42,7 @@ static void maxima_come_back(void **)
     }
 }
 
-/* A script may write what the library would not. */
+/* A script may write a container whose quantities do not fit its model. */
 static void quantities_of_another_size_are_refused(void **)
 {
     for (int k = 0; k < 3; k++) {
@@ -51,7 +52,7 @@ static void quantities_of_another_size_are_refused(void **)
         if (k == 0)
             ritz_dense_free(&a.quantity[0].A);
         if (k == 1)
-            a.quantity[0].F.ncol--; /* less inputs than the model has */
+            a.quantity[0].F.ncol--; /* fewer inputs than the model has */
         if (k == 2)
             snprintf(a.quantity[1].kind, RITZ_NAME_SIZE, "strain");
         assert_ok(ritz_container_write_reduced(path, &a, &stamp));

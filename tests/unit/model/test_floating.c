@@ -24,7 +24,7 @@ static void shape_directly(const ritz_component *body,
     ritz_dense_add(-1.0, &RW, Psi);
 }
 
-/* Two matrices, entry by entry, relative to the largest. */
+/* Compare two matrices relative to their largest entry. */
 static void assert_same(const ritz_dense *A, const ritz_dense *B, double bound)
 {
     const double scale = fmax(ritz_dense_max(A), ritz_dense_max(B));
@@ -35,10 +35,10 @@ static void assert_same(const ritz_dense *A, const ritz_dense *B, double bound)
         assert_near(A->val[k], B->val[k], bound * scale);
 }
 
-/* 4500 eps: some hundred terms, and the condition of ten of the basis. */
+/* 4500 eps: sums of some hundred terms, in a basis whose condition is 10 */
 static const double rounding = 1e-12;
 
-/* K, M, shapes and momenta against the matrices of the body itself. */
+/* Compare K, M, shapes and momenta with those of the full matrices. */
 static void check_matrices(const ritz_component *body,
                            const ritz_reduced *reduced, const ritz_floating *f)
 {
@@ -72,7 +72,7 @@ static void check_matrices(const ritz_component *body,
     assert_same(&rigid, &A, rounding);
 }
 
-/* theta x rho, along axis b, times rho, for a node that mode k turns: W S. */
+/* int (theta x rho)_b rho dm for a node that mode k turns by theta: W S. */
 static void turn_moment(const ritz_floating *f, int64_t node, int64_t k,
                         double S[3][3], double out[3][3])
 {
@@ -86,7 +86,8 @@ static void turn_moment(const ritz_floating *f, int64_t node, int64_t k,
     }
 }
 
-/* What one node adds: m x u' + S W', and m u u' + W S W', with S symmetric. */
+/* One node adds m x u' + S W' to the positions and m u u' + W S W' to the
+   products; S is symmetric. */
 static void add_node(const ritz_component *body, const ritz_floating *f,
                      int64_t node, ritz_dense *X, ritz_dense *P)
 {
@@ -118,7 +119,7 @@ static void add_node(const ritz_component *body, const ritz_floating *f,
     }
 }
 
-/* int x_a v_b and int v_a v_b, summed over nodes that are rigid bodies. */
+/* int x_a v_b dm and int v_a v_b dm as sums over nodes, each a rigid body. */
 static void check_sums(const ritz_component *body, const ritz_floating *f)
 {
     const int64_t m = f->V.ncol;

@@ -15,7 +15,7 @@
 
 #include <stdio.h>
 
-/* 4500 eps: some hundred terms, and the condition of ten of the basis. */
+/* 4500 eps: sums of some hundred terms, in a basis whose condition is 10 */
 static const double rounding = 1e-12;
 
 static const ritz_floating_request requests[] = {
@@ -37,7 +37,7 @@ static void assert_same(const ritz_dense *A, const ritz_dense *B, double bound)
 
 /* ---- energy ------------------------------------------------------------- */
 
-/* A state of motion: of the frame, and of the modes. */
+/* The motion of the frame and of the modes at one instant. */
 typedef struct flight {
     double v[3], omega[3];
     double eta[FREE_FLEXIBLE], rate[FREE_FLEXIBLE];
@@ -52,7 +52,7 @@ static double shape_at(const ritz_dense *shape, int64_t row, const double *eta)
     return sum;
 }
 
-/* Motion of a node, of shape or turn, at the state of the modes. */
+/* Sum of a shape, of translations or of rotations, times the amplitudes. */
 static void take_node(const ritz_dense *shape, int64_t node, const double *eta,
                       double out[3])
 {
@@ -209,7 +209,7 @@ static void energy_is_that_of_the_whole_body(void **state)
 
 /* ---- rigid motion ------------------------------------------------------- */
 
-/* [R Psi]'M [R Psi], from the invariants. */
+/* The mass matrix [R Psi]'M [R Psi], made from the invariants. */
 static void make_whole(const ritz_floating *f, ritz_dense *out)
 {
     RITZ_OWN(ritz_dense) mirror = {0}, A = {0};
@@ -280,7 +280,7 @@ static void a_body_moved_rigidly_has_no_elastic_force(void **state)
 
 /* ---- one condition and another ------------------------------------------ */
 
-/* Psi -= R C, at the nodes, R about the origin of the frame. */
+/* Psi -= R C at the nodes, where R are rigid motions about the frame. */
 static void take_motion(const ritz_dense *C, ritz_floating *f)
 {
     for (int64_t j = 0; j < C->ncol; j++)
@@ -296,7 +296,7 @@ static void take_motion(const ritz_dense *C, ritz_floating *f)
         }
 }
 
-/* C: translations and rotations of node 1 in each mode. */
+/* C has the translations and rotations of node 1 in each mode. */
 static void find_node_motion(const ritz_floating *f, ritz_dense *C)
 {
     assert_ok(ritz_dense_new(6, f->V.ncol, C));
@@ -366,7 +366,7 @@ static void free_modes_have_mean_axes_already(void **state)
 
 /* ---- nodes -------------------------------------------------------------- */
 
-/* Displacements of grid 13 along axes of its own: K becomes Q K Q'. */
+/* Turn the displacement axes of grid 13 by Q: K becomes Q K Q'. */
 static void turn_grid(ritz_component *body, ritz_dense *others)
 {
     static const double axes[9] = {0.8, -0.6,  0.0,   0.36, 0.48,
@@ -435,8 +435,8 @@ static void axes_of_displacements_change_nothing(void **state)
     }
 }
 
-/* Grid 20, which moves with grid 12 as one rigid body, and whose first `count`
-   dofs are recovered. */
+/* Add grid 20, which follows grid 12 rigidly; its first `count` dofs are
+   recovered. */
 static void add_follower(int64_t count, ritz_component *body)
 {
     static const double place[3] = {6.0, -3.0, 4.0};
@@ -524,8 +524,8 @@ static void what_is_recovered_in_part_is_left_out(void **state)
         assert_near(ritz_dense_col(&with.turn, j)[3 * FREE_GRIDS], 0.0, 0.0);
 }
 
-/* Grids 11, 12 and 13 of the box as a port; these move as a rigid body in all
-   columns, or not. */
+/* A box whose grids 11, 12 and 13 are a port. If `rigid`, they move as a
+   rigid body in all columns. */
 static void make_ported(bool rigid, int64_t grids, ritz_reduced *out)
 {
     static const double origin[3];
@@ -590,7 +590,7 @@ static void a_frame_that_nothing_turns_is_refused(void **state)
 
 /* ---- other bodies ------------------------------------------------------- */
 
-/* The whole space of a plane beam of four elements, held or not. */
+/* A plane beam of four elements, held or not, reduced to all of its dofs. */
 static void make_beam(bool held, const char *damping, ritz_component *body,
                       ritz_reduced *out)
 {

@@ -16,10 +16,10 @@ static const double masses[NODES] = {2.0, 3.0, 0.5};
 static const double places[NODES][3] = {
     {1.0, -2.0, 0.5}, {4.0, 1.0, -1.5}, {-2.0, 0.25, 3.0}};
 static const double origin[3] = {0.5, -1.0, 0.75};
-/* sums of a dozen terms below 1000 */
+/* rounding of sums of a dozen terms below 1000 */
 static const double rounding = 1e5 * DBL_EPSILON;
 
-/* Motion of node i along axis a in mode k: all distinct. */
+/* Motion of node i along axis a in mode k; all numbers are distinct. */
 static double shape(int64_t k, int64_t i, int a)
 {
     return (double)(1 + 5 * k * k - 7 * i * i + (3 + k) * a * a + i * a) / 8.0;
@@ -202,7 +202,7 @@ static double value_of(const ritz_taylor *t, const double *q, int64_t i,
     return sum;
 }
 
-/* A motion of the frame and of the modes. */
+/* The motion of the frame and of the modes at one instant. */
 static const double a0[3] = {0.5, -1.25, 2.0}, w[3] = {0.75, -0.5, 1.5},
                     wdot[3] = {-2.0, 0.25, 1.0};
 static const double q[MODES] = {0.25, -0.5}, qdot[MODES] = {1.5, 0.75},
@@ -276,7 +276,7 @@ static double force_by_sid(const ritz_sid_terms *t, int64_t l)
     return sum;
 }
 
-/* Add sum m u~ u~', the second order of J, which SID does not have. */
+/* Add sum m u~ u~', the second-order term of J, which SID leaves out. */
 static void add_second_order(double turn[3])
 {
     for (int64_t i = 0; i < NODES; i++) {

@@ -1,4 +1,4 @@
-/* Reduced components in coordinates that begin with the motions of ports. */
+/* Reduced components whose first coordinates are the motions of ports. */
 #include "model/interface_form.h"
 #include "testing.h"
 
@@ -46,7 +46,7 @@ static ritz_status attach(const ritz_component *body, const char *ports,
     return ritz_reduce(body, &basis, out);
 }
 
-/* Largest difference of A from the first rows and columns of B. */
+/* Largest difference between A and the leading block of B. */
 static double difference(const ritz_dense *A, const ritz_dense *B)
 {
     double most = 0.0;
@@ -103,7 +103,8 @@ static void the_full_space_gives_craig_bampton(void **state)
                     1e-11 * form.hertz[k]);
 }
 
-/* Whether V'K V and V'M V have the blocks of the head. */
+/* Check the blocks of V'K V and V'M V that docs/methods/interfaces.md
+   states. */
 static void assert_blocks(const ritz_interface_form *form, int64_t motions)
 {
     const double most = ritz_dense_max(&form->K);
@@ -120,7 +121,8 @@ static void assert_blocks(const ritz_interface_form *form, int64_t motions)
         }
 }
 
-/* x are the motions of the port, frequencies stay, and a rigid motion is free. */
+/* The coordinates x are the motions of the port, frequencies do not change,
+   and rigid motions have no stiffness. */
 static void a_free_basis_takes_the_form(void **state)
 {
     RITZ_OWN(ritz_reduced) reduced = {0};
@@ -191,7 +193,7 @@ static void columns_at_rest_at_the_interface_are_scaled_by_mass(void **state)
                     1e-10 * before.lambda[form.K.ncol - 1]);
 }
 
-/* Twice the diagonal of K: springs of the ground as stiff as the body. */
+/* Springs to the ground that are as stiff as the body: its diagonal doubles. */
 static void a_held_body_is_told(void **state)
 {
     RITZ_OWN(ritz_reduced) reduced = {0};
@@ -259,7 +261,7 @@ static void what_moves_while_it_is_held_has_no_stiffness(void **state)
     assert_blocks(&form, 6);
 }
 
-/* The mass of the rigid motions of the frames. */
+/* The mass matrix of the rigid motions of the frames. */
 static double mass_of(const ritz_reduced *reduced)
 {
     RITZ_OWN(ritz_interface_form) form = {0};

@@ -29,7 +29,7 @@ static void place_solid(solid *s)
     }
 }
 
-/* N and the volume of a unit of the parent cube. */
+/* The shape functions N and the Jacobian determinant at a point. */
 static double shape_solid(const solid *s, const double xi[3], double N[8])
 {
     double J[3][3] = {{0}};
@@ -51,7 +51,7 @@ static double shape_solid(const solid *s, const double xi[3], double N[8])
            J[0][2] * (J[1][0] * J[2][1] - J[1][1] * J[2][0]);
 }
 
-/* B, 3 x 6: motion of a corner by its node. */
+/* B, 3 x 6, gives the motion of a corner from that of its node. */
 static void move_corner(const draft *d, const solid *s, int c, double B[3][6])
 {
     const double *at = d->place[s->node[c]];
@@ -152,7 +152,7 @@ static void a_face_that_follows_a_grid_is_exact(void **state)
     draft_assert_exact(&d, &sum);
 }
 
-/* Columns of M in two parts, as ranks of a reduction have them. */
+/* M is given in two groups of columns, as two ranks of a reduction hold it. */
 static void parts_of_the_mass_matrix_add_up(void **state)
 {
     (void)state;

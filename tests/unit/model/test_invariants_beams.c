@@ -44,7 +44,7 @@ static void a_beam_from_a_held_grid_is_exact(void **state)
     }
 }
 
-/* Two beams to held grids put one sum into the block of their node. */
+/* Two beams from one node to held grids: M has only the sum of their blocks. */
 static void several_beams_from_held_grids_lose_energy(void **state)
 {
     (void)state;
@@ -74,7 +74,8 @@ static void parallel_beams_on_one_axis_are_one(void **state)
     draft_assert_exact(&d, &s);
 }
 
-/* A rod moves by n_i u_i, whatever the direction: MSC's and others' CROD. */
+/* The CROD of MSC and others interpolates displacements linearly in every
+   direction, not only along the rod. */
 static void add_rod(double mu, int64_t i, int64_t j, draft *d, draft_sums *s)
 {
     RITZ_OWN(ritz_dense) T = {0};
@@ -127,7 +128,7 @@ static void element_of_shabana_and_wehage(double L, double S[6][6])
     memcpy(S, of, sizeof of);
 }
 
-/* Elements of the frame are lines, as a deck would say. */
+/* Give the elements of the frame as line cells, as a deck does. */
 static ritz_status name_lines(ritz_component *beam)
 {
     ritz_elements *e = &beam->elements;
@@ -180,7 +181,7 @@ static void the_plane_element_of_shabana_and_wehage_is_exact(void **state)
     element_of_shabana_and_wehage(L, S);
     for (int j = 0; j < 6; j++)
         for (int k = 0; k < 6; k++)
-            /* x y' - y x', a handful of roundings of at most 0.14 */
+            /* a few roundings of terms below 0.14 */
             assert_near(ritz_dense_col(P, 6 + k)[j] -
                             ritz_dense_col(P, k)[6 + j],
                         m / 60.0 * S[j][k], 1e-14);
@@ -214,7 +215,8 @@ static void axial_terms_stay_as_they_are(void **state)
     }
 }
 
-/* Beams as NASTRAN-95 makes them with COUPMASS, and lumps among them. */
+/* Beams with the consistent mass that NASTRAN-95 makes under COUPMASS, and
+   lumped masses. */
 static void beams_of_a_solver_are_recognised(void **state)
 {
     (void)state;
@@ -256,7 +258,7 @@ static void offset_mass_is_exact_with_beams(void **state)
 
 /* ---- what is approximate ------------------------------------------------ */
 
-/* A beam whose ends are arms away from the grids: its M by its motion. */
+/* Add the mass of a beam whose ends are offset from its grids along y. */
 static void add_offset_beam(double mu, double away, draft *d)
 {
     RITZ_OWN(draft) own = {0};
@@ -303,7 +305,8 @@ static void what_is_no_beam_of_its_grids_loses_energy(void **state)
     assert_true(loss.value > 1e-3 && loss.value < 0.1);
 }
 
-/* Without a cell, a beam is not known to be one: its mean is taken. */
+/* Without a line cell a beam is not recognised, and its inertia is
+   approximate. */
 static void a_beam_without_a_cell_loses_energy(void **state)
 {
     (void)state;

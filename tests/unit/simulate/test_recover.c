@@ -1,4 +1,5 @@
-/* Rows of quantities over time, and their maxima. */
+/* Quantities over time that are recovered from coordinates, and their
+   maxima. */
 #include "testing.h"
 
 #include "spring_chain.h"
@@ -91,7 +92,7 @@ static int tear_down(void **state)
 static const ritz_signal push = {
     .kind = RITZ_SIGNAL_SINE, .amplitude = 5.0, .hertz = {1.2, 0.0}};
 
-/* Simulate with dampers tuned, and their motion as an instant. */
+/* Simulate the chain with retuned dampers and keep its coordinates. */
 static void simulate(const fixture *f, const ritz_damping *damping,
                      ritz_simulation *out)
 {
@@ -159,7 +160,7 @@ static void both_ways_agree_where_nothing_is_left_out(void **state)
     }
 }
 
-/* Accelerations of modes above all columns' frequencies are left out. */
+/* Accelerations of modes above the frequencies of all columns are left out. */
 static void vibrations_of_other_columns_have_no_inertia(void **state)
 {
     fixture *f = *state;

@@ -1,4 +1,5 @@
-/* Coordinates of dense models over time. */
+/* Coordinates, rates and accelerations that a simulation of a dense model
+   keeps. */
 #include "testing.h"
 
 #include "spring_chain.h"
@@ -89,7 +90,7 @@ static void coordinates_are_in_equilibrium(void **)
     }
 }
 
-/* Outputs and energies do not know whether coordinates are wanted. */
+/* Outputs and energies are the same with and without coordinates. */
 static void outputs_are_the_same(void **)
 {
     RITZ_OWN(ritz_component) chain = {0};
