@@ -47,7 +47,7 @@ static void grids_ascend_with_six_rows_and_points_with_one(void **)
     /* the range takes the grids 3 and 7, and not the point */
     assert_int_equal(c.port[0].dofs.count, 6);
     assert_int_equal(c.port[0].dofs.at[3], 7);
-    assert_near(c.port[0].origin[0], 1.5, 0.0); /* mean of 1 and 2 */
+    assert_near(c.port[0].origin[0], 1.5, 0.0); /* the mean of grids 1 and 2 */
     assert_near(c.port[0].origin[1], 3.0, 0.0);
     assert_int_equal(c.port[1].dofs.at[0], 6);
     /* as listed: grid 9 first */

@@ -1,4 +1,5 @@
-/* Quantities to recover from matrix files, and what their rows are. */
+/* Quantities to recover that are read from matrix files, and the labels of
+   their rows. */
 #include "testing.h"
 
 #include "folder.h"
@@ -68,8 +69,8 @@ static void rows_come_with_their_names(void **)
         assert_near(S.val[k], k == 2 ? 0.0 : (double)(k + 1), 0.0);
 }
 
-/* Rows down or across, in files of any format that matrices come in; the kind
-   behind a comma. */
+/* The matrix may have its rows as rows or as columns, in any format of
+   matrices; the kind follows a comma. */
 static void rows_may_be_columns(void **)
 {
     const char *const turned =
@@ -87,7 +88,8 @@ static void rows_may_be_columns(void **)
     assert_near(c.quantity->S.val[0], 1.0, 0.0);
 }
 
-/* Grid 2 follows grid 1, from which it is 2 away along x: u_y = v + 2 theta. */
+/* Grid 2 follows grid 1 rigidly at a distance of 2 along x:
+   u_y = v + 2 theta. */
 static void rows_of_dependent_dofs_follow_the_others(void **)
 {
     static const char deck[] = "BEGIN BULK\n"

@@ -9,7 +9,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* A file of somebody else; NULL and a word if it is not there. */
+/* Path of a file in the folder that the variable names; NULL, with a message, if
+   the variable is not set. */
 static const char *external(const char *variable, const char *name)
 {
     static char path[4][512];
@@ -25,17 +26,18 @@ static const char *external(const char *variable, const char *name)
     return path[turn];
 }
 
-/* What a real pair of matrices must come to. */
+/* Files of a component, and the dofs and first frequency that it must have. */
 typedef struct real {
     const char *variable, *stiffness, *mass, *bulk;
     int64_t dofs, removed;
-    double hertz; /* first flexible frequency; 0: rigid */
-    double bound; /* half a unit of its last digit */
+    double hertz; /* first flexible frequency; 0: the body is rigid */
+    double bound; /* half a unit of the last digit of hertz */
 } real;
 
 #define SOLVERS "nastran/public_solvers/"
 #define CSUPER  "nastran/nas2cam_csuper/"
-/* data/dualspin/SOURCE.md; inboard, mystran, csuper: measured here */
+/* Frequencies of the spacecraft are from data/dualspin/SOURCE.md; those of
+   inboard, mystran and csuper were computed with this program. */
 static const real cases[] = {
     {"RITZ_DATA", "dualspin/rotor.op4:KGG", "dualspin/rotor.op4:MGG",
      "dualspin/rotor.bdf", 243, 3, 0.19878, 5e-6},
@@ -56,7 +58,7 @@ static const real cases[] = {
      "nastran/pynastran/dmig.pch:MAAX", NULL, 15, 0, 1.033490, 5e-7},
 };
 
-/* The first flexible frequency; 0 of a rigid component. */
+/* The first flexible frequency; 0 if there is none. */
 static double first_hertz(const ritz_component *c)
 {
     const ritz_span span = {.modes = 1};
@@ -98,7 +100,8 @@ static void real_files_become_components(void **)
         check_real(&cases[k]);
 }
 
-/* Node numbers of a dof map, three dofs each, as a file of names. */
+/* Write a file of dof names from the node numbers of a map with three dofs for
+   each node. */
 static void convert_map(const char *path)
 {
     char line[128];

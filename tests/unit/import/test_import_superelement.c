@@ -14,8 +14,8 @@
 #include <stdio.h>
 #include <unistd.h>
 
-/* Three rows: a spring from point 1001 to grid 9 along 3, and grid 2 along 1
-   on a spring of its own. */
+/* Three rows: a spring joins point 1001 and direction 3 of grid 9, and a
+   spring to the ground holds direction 1 of grid 2. */
 static const char deck[] = "BEGIN SUPER      7\n"
                            "EXTRN,9,3,2,1,1001,0\n"
                            "GRID,2,,1.,0.,0.\nGRID,9,,0.,2.,0.\n"
@@ -120,7 +120,8 @@ static void the_imaginary_part_of_a_stiffness_is_damping(void **state)
     assert_true(matrix_entry(&polar.K, polar.K.val, 1, 1) == 2.0);
 }
 
-/* K + i K4 of one spring, as Matrix Market has it; imaginary zeros are none. */
+/* K + i K4 of one spring in Matrix Market; an imaginary part of zeros is
+   left out. */
 static void a_complex_stiffness_brings_structural_damping(void **state)
 {
     ritz_import_request request = {.rows = "0"};
@@ -168,7 +169,8 @@ static void other_complex_matrices_are_refused(void **state)
     assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_FORMAT,
                  "c.pch:C' is complex: only a stiffness may be, K + i K4");
     request.damping = NULL;
-    request.stiffness = spec_of("H"); /* hermitian: no damping of a structure */
+    /* hermitian: its imaginary part is no structural damping */
+    request.stiffness = spec_of("H");
     assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_FORMAT,
                  "K4: unsymmetric by 2.0e+00 of its largest entry");
 }
