@@ -1,4 +1,4 @@
-"""What scripts of this folder share: TAP lines, tools, a block of solid."""
+"""Shared by the scripts of this folder: TAP lines, tools, a block of solid."""
 import os
 import pathlib
 import subprocess
@@ -59,7 +59,7 @@ class Tools:
         self.folder = pathlib.Path(folder)
 
     def __call__(self, tool, *arguments):
-        """What the tool printed; the script ends if it fails."""
+        """Run a tool, which must succeed, and return its standard output."""
         done = subprocess.run(
             [self.programs / tool, *map(str, arguments)], cwd=self.folder,
             text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)

@@ -34,7 +34,7 @@ import output4  # noqa: E402
 
 PAGE = DATA.parent / "docs" / "simulators.md"
 BIN = pathlib.Path(sys.argv[1]).resolve()
-# what is no simulator's: Ritz's own
+# the exporter of containers, which no simulator reads
 OWN = {"container"}
 
 

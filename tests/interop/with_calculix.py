@@ -74,7 +74,7 @@ def hertz_of(tools, component, modes):
 
 
 def stored(tools, deck, *options):
-    """What ritz-import says of the matrices that CalculiX stored."""
+    """Import the matrices that CalculiX stored; returns what is printed."""
     run_calculix(deck + ".inp", tools.folder)
     return tools("ritz-import", "--stiffness", deck + ".sti", "--mass",
                  deck + ".mas", "--dofs", deck + ".dof", "--bulk",

@@ -1,4 +1,5 @@
-# What the scripts of --engine slepc share; sourced after tap.sh and models.sh.
+# Shared by the scripts that test --engine slepc; sourced after tap.sh and
+# models.sh.
 # shellcheck shell=sh disable=SC2034 # for those who source it
 
 # Open MPI refuses root and more ranks than cores, unless it is told

@@ -70,8 +70,8 @@ for modes in displacement acceleration; do
         --component observed.h5 --modes $modes --every 7 -o $modes.pvd
 done
 
-# What ritz-verify measured of the response is of its largest value, per unit
-# force; the loads are two, of 1 each.
+# ritz-verify measured errors relative to the largest response to a unit force;
+# here two forces of 1 act at once, so that the bound is twice that.
 cat >compare.py <<'END_PY'
 import h5py, meshio, numpy, random, sys
 full = h5py.File("full-run.h5")

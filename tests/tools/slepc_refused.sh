@@ -7,7 +7,7 @@
 . "$(dirname "$0")/models.sh"
 . "$(dirname "$0")/ranks.sh"
 
-# slepc.sh tests what is said without the program
+# slepc.sh tests the refusal of tools that were built without it
 if [ ! -x "$program" ]; then
     echo 'skipped: built without PETSc'
     exit 77
