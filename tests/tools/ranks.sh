@@ -10,9 +10,9 @@ check() { /usr/bin/python3 -s "$here/slepc.py" "$@"; }
 ranks() { number=$1 && shift && mpirun -n "$number" ritz-basis "$@"; }
 reduce() { number=$1 && shift && mpirun -n "$number" ritz-reduce "$@"; }
 
-# import_membrane: m.h5, a square membrane with its rim as port. The interior has
-# 400 dofs, more than rank 0 would solve alone, and most eigenvalues are double,
-# by symmetry.
+# import_membrane: m.h5, a square membrane with its rim as port. Its interior
+# has 400 dofs, more than rank 0 would solve alone, and most eigenvalues are
+# double, by symmetry.
 import_membrane() {
     side=22
     rim=1-$side,$((side * (side - 1) + 1))-$((side * side))

@@ -1,8 +1,8 @@
 #!/bin/sh
 # slepc_refused.sh FOLDER-OF-THE-TOOLS - ritz-basis and ritz-reduce --engine
-# slepc on several ranks where they must fail: one rank reports the failure, with
-# the status and the sentence of a single process, all ranks end, and no file is
-# left.
+# slepc on several ranks where they must fail: one rank reports the failure with
+# the status and the sentence of a single process, all ranks end, and no file
+# is left.
 . "$(dirname "$0")/tap.sh"
 . "$(dirname "$0")/models.sh"
 . "$(dirname "$0")/ranks.sh"
@@ -24,8 +24,8 @@ done
 # seconds SIGKILL; by default it waits a second each time.
 export OMPI_MCA_odls_base_sigkill_timeout=0
 
-# fails STATUS WORDS COMMAND...: the failure is reported in one line by one rank,
-# with the status of a single process, and no file is left.
+# fails STATUS WORDS COMMAND...: one rank reports the failure in one line, with
+# the status of a single process, and no file is left.
 fails() {
     rm -f out.h5
     expect "$@" -o out.h5
