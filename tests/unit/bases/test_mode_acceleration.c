@@ -159,7 +159,7 @@ static void a_free_bar_has_the_stress_of_the_mass_behind(void **)
 /* The bar is held at its left end by a port, whose force is not known. The
    force at its right end gives all elements the same stress, which mode
    acceleration finds in a basis whose columns contain no part of it. */
-static void a_held_bar_is_pulled_alike_everywhere(void **)
+static void a_held_bar_has_the_same_stress_everywhere(void **)
 {
     RITZ_OWN(ritz_component) bar = {0};
     RITZ_OWN(ritz_reduced) reduced = {0};
@@ -183,9 +183,10 @@ static void a_held_bar_is_pulled_alike_everywhere(void **)
 }
 
 /*
- * Where T is square, q is u itself, and any motion that is in equilibrium, M u''
- * + D u' + K u = B f - c b b'u' - k b b'u at the dofs that no port holds, has
- * the stresses S u exactly: here f is what such a motion takes at each dof.
+ * If T is square, q determines u. A motion that satisfies
+ *     M u'' + D u' + K u = B f - c b b'u' - k b b'u
+ * at all dofs but those of ports then has exactly the stresses S u. The test
+ * chooses a motion, and f is the force that it takes at each dof.
  */
 static void a_square_basis_gives_the_stresses_of_its_motion(void **)
 {
@@ -411,7 +412,7 @@ static void quantities_that_do_not_fit_are_refused(void **)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_free_bar_has_the_stress_of_the_mass_behind),
-    cmocka_unit_test(a_held_bar_is_pulled_alike_everywhere),
+    cmocka_unit_test(a_held_bar_has_the_same_stress_everywhere),
     cmocka_unit_test(a_square_basis_gives_the_stresses_of_its_motion),
     cmocka_unit_test(rows_that_follow_rigid_motion_are_left_out),
     cmocka_unit_test(what_makes_no_sense_is_refused),

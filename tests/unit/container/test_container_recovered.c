@@ -18,7 +18,7 @@ static int tear_down(void **)
     return 0;
 }
 
-static void maxima_come_back(void **)
+static void maxima_are_read_back(void **)
 {
     RITZ_OWN(ritz_recovered) a = {0}, b = {0};
 
@@ -64,7 +64,7 @@ static void quantities_of_another_size_are_refused(void **)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(maxima_come_back),
+    cmocka_unit_test(maxima_are_read_back),
     cmocka_unit_test(quantities_of_another_size_are_refused),
 };
 

@@ -42,7 +42,7 @@ static void rows_are_in_the_order_of_the_pairs(void **state)
                 "9.1 9.2 9.3 3.1 3.6 1001.0 1003.0 1002.0");
 }
 
-static void a_range_stands_for_what_there_is(void **state)
+static void a_range_names_the_grids_that_exist(void **state)
 {
     (void)state;
     assert_rows("GRID,2\nGRID,4\nGRID,7\nSPOINT,5\n"
@@ -142,7 +142,7 @@ static void a_real_punch_file_names_its_rows(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(rows_are_in_the_order_of_the_pairs),
-    cmocka_unit_test(a_range_stands_for_what_there_is),
+    cmocka_unit_test(a_range_names_the_grids_that_exist),
     cmocka_unit_test(a_row_named_twice_is_kept_as_a_sentence),
     cmocka_unit_test(what_names_no_rows_is_refused),
     cmocka_unit_test(a_deck_cut_or_corrupted_anywhere_ends_well),

@@ -189,7 +189,7 @@ static void assert_same_motion(const char *name, int fmi, ritz_model model)
     fmu_close(&d);
 }
 
-static void held_inputs_move_it_as_ritz_simulate_does(void **state)
+static void held_inputs_give_the_motion_of_ritz_simulate(void **state)
 {
     const double coupled[MASSES] = {3.0, 0.0, 1.0};
     const char *blocks[3] = {"states: 6, of 3 uncoupled modes",
@@ -317,7 +317,7 @@ static void the_archive_holds_what_the_standard_wants(void **state)
     }
 }
 
-static void the_same_model_is_the_same_bytes(void **state)
+static void the_same_model_gives_the_same_bytes(void **state)
 {
     RITZ_OWN(ritz_reduced) reduced = {0};
     RITZ_OWN(ritz_export_report) report = {0};
@@ -457,7 +457,7 @@ static void moments_and_tonnes_have_units(void **state)
 
 /* ---- refusals ----------------------------------------------------------- */
 
-static void what_an_fmu_cannot_be_is_refused(void **state)
+static void models_that_no_fmu_can_hold_are_refused(void **state)
 {
     RITZ_OWN(ritz_reduced) reduced = {0};
     RITZ_OWN(ritz_export_report) report = {0};
@@ -550,17 +550,17 @@ static void a_failed_write_leaves_no_file(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(held_inputs_move_it_as_ritz_simulate_does),
+    cmocka_unit_test(held_inputs_give_the_motion_of_ritz_simulate),
     cmocka_unit_test(a_state_space_moves_as_ritz_simulate_does),
     cmocka_unit_test(nominal_values_stay_above_zero),
     cmocka_unit_test(a_pole_beyond_all_doubles_ends_no_search),
     cmocka_unit_test(the_archive_holds_what_the_standard_wants),
-    cmocka_unit_test(the_same_model_is_the_same_bytes),
+    cmocka_unit_test(the_same_model_gives_the_same_bytes),
     cmocka_unit_test(dependencies_are_the_entries_that_are_not_zero),
     cmocka_unit_test(names_are_distinct_and_escaped),
     cmocka_unit_test(units_are_stated_where_they_are_known),
     cmocka_unit_test(moments_and_tonnes_have_units),
-    cmocka_unit_test(what_an_fmu_cannot_be_is_refused),
+    cmocka_unit_test(models_that_no_fmu_can_hold_are_refused),
     cmocka_unit_test(a_model_may_have_inputs_or_outputs_alone),
     cmocka_unit_test(exports_survive_every_failing_allocation),
     cmocka_unit_test(a_failed_write_leaves_no_file),

@@ -98,7 +98,7 @@ static void assert_motion(double lambda, double d, double force, double h,
         }
 }
 
-static void a_mass_under_a_held_force_moves_by_its_square(void **state)
+static void a_free_mass_under_a_constant_force_accelerates(void **state)
 {
     const double h = 3.0;
     const double a = 2.0 * 0.25; /* b u */
@@ -109,7 +109,7 @@ static void a_mass_under_a_held_force_moves_by_its_square(void **state)
                   near);
 }
 
-static void an_undamped_mode_swings_about_its_rest(void **state)
+static void an_undamped_mode_oscillates_about_its_static_solution(void **state)
 {
     (void)state;
     for (int k = 0; k < 6; k++) {
@@ -127,7 +127,7 @@ static void an_undamped_mode_swings_about_its_rest(void **state)
 }
 
 /* zeta = 0.1 and 5, real roots in the second. */
-static void a_damped_mode_has_its_roots(void **state)
+static void a_damped_mode_decays_by_its_poles(void **state)
 {
     const double w = 2.0;
     const double h = 1.7;
@@ -173,7 +173,7 @@ static void a_defective_pair_is_propagated(void **state)
 }
 
 /* A free mass on a dashpot: one root is 0. */
-static void a_dashpot_ends_rigid_motion(void **state)
+static void a_dashpot_stops_rigid_motion(void **state)
 {
     const double d = 0.5;
 
@@ -206,7 +206,7 @@ static void a_negative_stiffness_grows(void **state)
 }
 
 /* A chain of three integrators: one eigenvector for three states. */
-static void three_integrators_make_a_cubic(void **state)
+static void three_integrators_give_a_cubic_of_time(void **state)
 {
     /* A by columns, B, C, D, nominals */
     const double number[] = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0,
@@ -302,7 +302,7 @@ static void a_reset_instance_is_new(void **state)
     }
 }
 
-static void a_saved_state_goes_on_bitwise(void **state)
+static void a_restored_state_continues_bit_for_bit(void **state)
 {
     fmi2GetFMUstateTYPE *get = NULL;
     fmi2SetFMUstateTYPE *set = NULL;
@@ -622,7 +622,7 @@ static void write_hostile(size_t word, uint64_t value, size_t cut)
     fmu_sample_write(bytes, size);
 }
 
-static void resources_that_lie_are_refused(void **state)
+static void resources_with_wrong_numbers_are_refused(void **state)
 {
     static const struct {
         size_t word;
@@ -682,18 +682,18 @@ static void a_uri_is_decoded(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(a_mass_under_a_held_force_moves_by_its_square),
-    cmocka_unit_test(an_undamped_mode_swings_about_its_rest),
-    cmocka_unit_test(a_damped_mode_has_its_roots),
+    cmocka_unit_test(a_free_mass_under_a_constant_force_accelerates),
+    cmocka_unit_test(an_undamped_mode_oscillates_about_its_static_solution),
+    cmocka_unit_test(a_damped_mode_decays_by_its_poles),
     cmocka_unit_test(a_defective_pair_is_propagated),
-    cmocka_unit_test(a_dashpot_ends_rigid_motion),
+    cmocka_unit_test(a_dashpot_stops_rigid_motion),
     cmocka_unit_test(a_negative_stiffness_grows),
-    cmocka_unit_test(three_integrators_make_a_cubic),
+    cmocka_unit_test(three_integrators_give_a_cubic_of_time),
     cmocka_unit_test(units_do_not_matter),
     cmocka_unit_test(small_steps_add_up_to_a_large_one),
     cmocka_unit_test(instances_share_nothing),
     cmocka_unit_test(a_reset_instance_is_new),
-    cmocka_unit_test(a_saved_state_goes_on_bitwise),
+    cmocka_unit_test(a_restored_state_continues_bit_for_bit),
     cmocka_unit_test(derivatives_are_those_of_the_equation),
     cmocka_unit_test(partial_derivatives_are_the_matrices),
     cmocka_unit_test(calls_that_make_no_sense_are_refused),
@@ -702,7 +702,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(other_variables_than_reals_are_refused),
     cmocka_unit_test(resources_of_another_token_are_refused),
     cmocka_unit_test(resources_that_are_damaged_are_refused),
-    cmocka_unit_test(resources_that_lie_are_refused),
+    cmocka_unit_test(resources_with_wrong_numbers_are_refused),
     cmocka_unit_test(a_uri_is_decoded),
 };
 

@@ -134,7 +134,7 @@ static void columns_are_chosen(void **)
                  "is no list of columns");
 }
 
-static void modes_of_mbdyn_come_by_body(void **)
+static void a_body_of_mbdyn_is_chosen_by_its_label(void **)
 {
     const char *const path = folder_write("b.mod", modal);
     ritz_history_request request = of_two();
@@ -300,7 +300,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_table_has_blocks_of_columns),
     cmocka_unit_test(a_table_has_names),
     cmocka_unit_test(columns_are_chosen),
-    cmocka_unit_test(modes_of_mbdyn_come_by_body),
+    cmocka_unit_test(a_body_of_mbdyn_is_chosen_by_its_label),
     cmocka_unit_test(coordinates_are_transformed),
     cmocka_unit_test(what_is_no_history_is_refused),
     cmocka_unit_test(damaged_files_are_refused),

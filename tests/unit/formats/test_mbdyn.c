@@ -531,7 +531,7 @@ static void assert_momenta(const fem_data *f, const ritz_floating *body)
 /* Grids that turn have rotary inertia: mass, inertia and momenta of a file are
    those of the whole M, and products those of the invariants. Modes of the free
    body have no momentum; modes in a tangent frame have. */
-static void inertia_of_rotations_counts(void **state)
+static void rotary_inertia_is_in_the_file(void **state)
 {
     const fixture *s = *state;
     static fem_data f;
@@ -591,7 +591,7 @@ static bool says(const ritz_export_report *report, const char *words)
     return false;
 }
 
-static void what_is_lost_is_said(void **state)
+static void the_lost_energy_is_reported(void **state)
 {
     const fixture *s = *state;
     RITZ_OWN(ritz_export_report)
@@ -657,10 +657,10 @@ static void no_allocation_failure_leaks(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(mbdyn_reads_every_bit),
     cmocka_unit_test(invariants_are_those_of_the_masses),
-    cmocka_unit_test(inertia_of_rotations_counts),
+    cmocka_unit_test(rotary_inertia_is_in_the_file),
     cmocka_unit_test(a_tangent_frame_holds_its_grid),
     cmocka_unit_test(the_certificate_is_in_comments),
-    cmocka_unit_test(what_is_lost_is_said),
+    cmocka_unit_test(the_lost_energy_is_reported),
     cmocka_unit_test(bodies_without_shapes_or_frames_are_refused),
     cmocka_unit_test(no_allocation_failure_leaks),
 };

@@ -106,14 +106,15 @@ static void check_file(const char *variable, const char *name)
     check_sample(&f);
 }
 
-static void a_file_of_others_has_the_same_orders(void **state)
+static void a_third_party_file_has_the_same_order_of_indices(void **state)
 {
     (void)state;
     check_file("RITZ_DATA", "balken1m.SID_FEM");
 }
 
 /* Four modes in a tangent frame, eleven in mean axes (third-party files). */
-static void larger_files_of_others_have_the_same_orders(void **state)
+static void
+larger_third_party_files_have_the_same_order_of_indices(void **state)
 {
     (void)state;
     check_file("RITZ_EXTERNAL_DATA", "Beam_3m.SID_FEM");
@@ -350,7 +351,7 @@ static void assert_refused(const ritz_reduced *reduced, const char *reference,
     assert_int_equal(access(path, F_OK), -1);
 }
 
-static void what_has_no_shapes_is_refused(void **state)
+static void a_body_without_shapes_is_refused(void **state)
 {
     const moving_body *f = *state;
     ritz_reduced other = f->reduced; /* borrowed */
@@ -375,12 +376,12 @@ static void no_allocation_failure_leaks(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(the_reader_takes_the_layout),
-    cmocka_unit_test(a_file_of_others_has_the_same_orders),
-    cmocka_unit_test(larger_files_of_others_have_the_same_orders),
+    cmocka_unit_test(a_third_party_file_has_the_same_order_of_indices),
+    cmocka_unit_test(larger_third_party_files_have_the_same_order_of_indices),
     cmocka_unit_test(two_masses_are_those_worked_by_hand),
     cmocka_unit_test(every_bit_is_read_again),
     cmocka_unit_test(the_certificate_is_in_the_first_line),
-    cmocka_unit_test(what_has_no_shapes_is_refused),
+    cmocka_unit_test(a_body_without_shapes_is_refused),
     cmocka_unit_test(no_allocation_failure_leaks),
 };
 

@@ -314,7 +314,7 @@ static void scalar_points_may_be_attached(void **state)
                                   "     13       6       2\n"));
 }
 
-static void few_digits_are_said_to_round(void **state)
+static void rounding_to_few_digits_is_reported(void **state)
 {
     const ritz_export_request style = {.text = true, .digits = 9};
     RITZ_OWN(ritz_reduced) small = {0};
@@ -463,7 +463,7 @@ static ritz_status read_deck(const char *bytes, int64_t size)
     return ritz_deck_parse("small.pch", text, size, NULL, &deck);
 }
 
-static void written_decks_cut_anywhere_are_answered(void **state)
+static void written_decks_are_read_or_refused_wherever_cut(void **state)
 {
     RITZ_OWN(ritz_reduced) small = {0};
     RITZ_OWN(ritz_export_report) report = {0};
@@ -498,12 +498,12 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(the_small_component_has_these_cards),
     cmocka_unit_test(matrices_come_back_in_every_bit),
     cmocka_unit_test(scalar_points_may_be_attached),
-    cmocka_unit_test(few_digits_are_said_to_round),
+    cmocka_unit_test(rounding_to_few_digits_is_reported),
     cmocka_unit_test(a_bar_comes_back_as_it_was),
     cmocka_unit_test(what_is_no_superelement_is_refused),
     cmocka_unit_test(all_three_files_are_there_or_none),
     cmocka_unit_test(a_number_is_for_superelements),
-    cmocka_unit_test(written_decks_cut_anywhere_are_answered),
+    cmocka_unit_test(written_decks_are_read_or_refused_wherever_cut),
     cmocka_unit_test(survives_failing_allocations),
 };
 

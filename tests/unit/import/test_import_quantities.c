@@ -159,7 +159,7 @@ static void refuse(const char *recovery, const char *rows, ritz_status code,
     assert_fails(ritz_import(&request, &c, &report), code, words);
 }
 
-static void what_does_not_fit_is_refused(void **)
+static void rows_that_do_not_fit_are_refused(void **)
 {
     const char *const s = put_rows();
     const char *const good = spell("stress", s, "");
@@ -188,7 +188,7 @@ static void what_does_not_fit_is_refused(void **)
                RITZ_ERR_FORMAT, names[k].words);
 }
 
-static void two_of_a_name_are_refused(void **)
+static void two_quantities_of_one_name_are_refused(void **)
 {
     const char *const recovery[] = {spell("stress", put_rows(), ""),
                                     spell("stress", put_rows(), "")};
@@ -226,8 +226,8 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(rows_may_be_columns),
     cmocka_unit_test(rows_of_dependent_dofs_follow_the_others),
     cmocka_unit_test(rows_of_nastran_come_with_its_superelement),
-    cmocka_unit_test(what_does_not_fit_is_refused),
-    cmocka_unit_test(two_of_a_name_are_refused),
+    cmocka_unit_test(rows_that_do_not_fit_are_refused),
+    cmocka_unit_test(two_quantities_of_one_name_are_refused),
     cmocka_unit_test(all_allocations_may_fail),
 };
 

@@ -151,7 +151,7 @@ static void check_body(const ritz_component *body, const ritz_reduced *reduced,
     check_sums(body, &f);
 }
 
-static void a_chain_is_what_its_grids_add_up_to(void **state)
+static void terms_of_a_chain_are_sums_over_its_grids(void **state)
 {
     (void)state;
     const ritz_floating_request tangent = {"15", "tangent"};
@@ -167,7 +167,7 @@ static void a_chain_is_what_its_grids_add_up_to(void **state)
     }
 }
 
-static void a_box_is_what_its_grids_add_up_to(void **state)
+static void terms_of_a_box_are_sums_over_its_grids(void **state)
 {
     (void)state;
     RITZ_OWN(ritz_component) body = {0};
@@ -250,7 +250,7 @@ static void every_allocation_may_fail(void **state)
     assert_survives_every_allocation(convert(NULL));
 }
 
-static void what_is_no_frame_is_refused(void **state)
+static void frames_that_do_not_exist_are_refused(void **state)
 {
     (void)state;
     static const struct {
@@ -277,11 +277,11 @@ static void what_is_no_frame_is_refused(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(a_chain_is_what_its_grids_add_up_to),
-    cmocka_unit_test(a_box_is_what_its_grids_add_up_to),
+    cmocka_unit_test(terms_of_a_chain_are_sums_over_its_grids),
+    cmocka_unit_test(terms_of_a_box_are_sums_over_its_grids),
     cmocka_unit_test(a_tangent_frame_holds_its_node),
     cmocka_unit_test(mean_axes_have_no_momentum),
-    cmocka_unit_test(what_is_no_frame_is_refused),
+    cmocka_unit_test(frames_that_do_not_exist_are_refused),
     cmocka_unit_test(every_allocation_may_fail),
 };
 

@@ -307,7 +307,7 @@ static void find_node_motion(const ritz_floating *f, ritz_dense *C)
         }
 }
 
-static void tangent_and_mean_axes_become_each_other(void **state)
+static void tangent_and_mean_axes_are_converted_into_each_other(void **state)
 {
     (void)state;
     RITZ_OWN(ritz_component) body = {0};
@@ -506,7 +506,7 @@ static void a_recovered_grid_is_a_node_and_holds_a_frame(void **state)
         }
 }
 
-static void what_is_recovered_in_part_is_left_out(void **state)
+static void grids_recovered_in_part_are_left_out(void **state)
 {
     (void)state;
     RITZ_OWN(ritz_reduced) two = {0}, four = {0};
@@ -571,7 +571,7 @@ static void a_rigid_port_holds_a_frame(void **state)
                         rounding * ritz_dense_max(&f.shape));
 }
 
-static void a_frame_that_nothing_turns_is_refused(void **state)
+static void a_tangent_frame_without_rotation_is_refused(void **state)
 {
     (void)state;
     RITZ_OWN(ritz_reduced) loose = {0}, line = {0};
@@ -678,13 +678,13 @@ static void stated_damping_is_in_the_matrix(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(energy_is_that_of_the_whole_body),
     cmocka_unit_test(a_body_moved_rigidly_has_no_elastic_force),
-    cmocka_unit_test(tangent_and_mean_axes_become_each_other),
+    cmocka_unit_test(tangent_and_mean_axes_are_converted_into_each_other),
     cmocka_unit_test(free_modes_have_mean_axes_already),
     cmocka_unit_test(axes_of_displacements_change_nothing),
     cmocka_unit_test(a_recovered_grid_is_a_node_and_holds_a_frame),
-    cmocka_unit_test(what_is_recovered_in_part_is_left_out),
+    cmocka_unit_test(grids_recovered_in_part_are_left_out),
     cmocka_unit_test(a_rigid_port_holds_a_frame),
-    cmocka_unit_test(a_frame_that_nothing_turns_is_refused),
+    cmocka_unit_test(a_tangent_frame_without_rotation_is_refused),
     cmocka_unit_test(a_plane_beam_has_three_rigid_motions),
     cmocka_unit_test(a_body_that_is_held_keeps_its_modes),
     cmocka_unit_test(stated_damping_is_in_the_matrix),

@@ -154,9 +154,9 @@ static void a_free_basis_takes_the_form(void **state)
     assert_true(ground.rigid_hz <= 1e-6 * ground.flexible_hz);
 }
 
-/* Its columns bend as the attached dofs move: they are no modes of the held
-   body, and the stiffness of rigid motion is eps of the largest lambda. */
-static void columns_that_bend_with_the_interface_are_modes_after(void **state)
+/* Columns of a Rubin basis move the attached dofs: they are no modes of the
+   held body. The stiffness of rigid motion is eps of the largest lambda. */
+static void columns_that_move_the_interface_become_modes(void **state)
 {
     RITZ_OWN(ritz_reduced) reduced = {0};
     RITZ_OWN(ritz_interface_form) form = {0};
@@ -194,7 +194,7 @@ static void columns_at_rest_at_the_interface_are_scaled_by_mass(void **state)
 }
 
 /* Springs to the ground that are as stiff as the body: its diagonal doubles. */
-static void a_held_body_is_told(void **state)
+static void a_held_body_is_recognised(void **state)
 {
     RITZ_OWN(ritz_reduced) reduced = {0};
     RITZ_OWN(ritz_interface_form) form = {0};
@@ -244,8 +244,8 @@ static void what_cannot_be_an_interface_is_refused(void **state)
     fixed.num_ports = ports;
 }
 
-/* Grid 4, without springs, drifts while grid 1 is held. */
-static void what_moves_while_it_is_held_has_no_stiffness(void **state)
+/* Grid 4 has no springs and is free while grid 1 is held. */
+static void a_mechanism_with_the_interface_held_has_no_stiffness(void **state)
 {
     RITZ_OWN(ritz_reduced) full = {0};
     RITZ_OWN(ritz_interface_form) form = {0};
@@ -274,8 +274,11 @@ static double mass_of(const ritz_reduced *reduced)
     return mass;
 }
 
-/* As of a hinge that is free: known by the momentum, or by what ports do. */
-static void what_is_loose_is_carried_along(void **state)
+/* Without stiffness every part of the body follows the interface, as a part
+   on a free hinge does: the mass at the interface is that of the body, whether
+   it is found from the momentum or, without invariants, from the motions of
+   ports. */
+static void parts_without_stiffness_follow_the_interface(void **state)
 {
     RITZ_OWN(ritz_reduced) full = {0};
     RITZ_OWN(ritz_invariants) none = {0};
@@ -320,12 +323,12 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(constraint_modes_are_kept_bit_for_bit),
     cmocka_unit_test(the_full_space_gives_craig_bampton),
     cmocka_unit_test(a_free_basis_takes_the_form),
-    cmocka_unit_test(columns_that_bend_with_the_interface_are_modes_after),
+    cmocka_unit_test(columns_that_move_the_interface_become_modes),
     cmocka_unit_test(columns_at_rest_at_the_interface_are_scaled_by_mass),
-    cmocka_unit_test(a_held_body_is_told),
+    cmocka_unit_test(a_held_body_is_recognised),
     cmocka_unit_test(what_cannot_be_an_interface_is_refused),
-    cmocka_unit_test(what_moves_while_it_is_held_has_no_stiffness),
-    cmocka_unit_test(what_is_loose_is_carried_along),
+    cmocka_unit_test(a_mechanism_with_the_interface_held_has_no_stiffness),
+    cmocka_unit_test(parts_without_stiffness_follow_the_interface),
     cmocka_unit_test(no_allocation_failure_leaks),
 };
 

@@ -103,7 +103,7 @@ static void add_rod(double mu, int64_t i, int64_t j, draft *d, draft_sums *s)
     d->line[d->lines++][1] = j;
 }
 
-static void rods_stand_beside_beams(void **state)
+static void rods_parallel_to_beams_are_exact(void **state)
 {
     (void)state;
     RITZ_OWN(draft) d = {0};
@@ -289,7 +289,7 @@ static void add_offset_beam(double mu, double away, draft *d)
     d->line[d->lines++][1] = 1;
 }
 
-static void what_is_no_beam_of_its_grids_loses_energy(void **state)
+static void an_offset_beam_loses_energy(void **state)
 {
     (void)state;
     RITZ_OWN(draft) d = {0};
@@ -328,13 +328,13 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_beam_from_a_held_grid_is_exact),
     cmocka_unit_test(several_beams_from_held_grids_lose_energy),
     cmocka_unit_test(parallel_beams_on_one_axis_are_one),
-    cmocka_unit_test(rods_stand_beside_beams),
+    cmocka_unit_test(rods_parallel_to_beams_are_exact),
     cmocka_unit_test(the_plane_element_of_shabana_and_wehage_is_exact),
     cmocka_unit_test(a_plane_cantilever_keeps_its_energy),
     cmocka_unit_test(axial_terms_stay_as_they_are),
     cmocka_unit_test(beams_of_a_solver_are_recognised),
     cmocka_unit_test(offset_mass_is_exact_with_beams),
-    cmocka_unit_test(what_is_no_beam_of_its_grids_loses_energy),
+    cmocka_unit_test(an_offset_beam_loses_energy),
     cmocka_unit_test(a_beam_without_a_cell_loses_energy),
 };
 

@@ -124,7 +124,8 @@ static ritz_instant instant_of(const ritz_simulation *s, int64_t k)
  * acceleration gives what mode displacement does: with dampers retuned, and any
  * stated damping.
  */
-static void both_ways_agree_where_nothing_is_left_out(void **state)
+static void
+mode_displacement_and_acceleration_agree_in_a_full_basis(void **state)
 {
     static const char *const dampings[] = {
         "", "rayleigh 0.2 0.001", "modal 0.03", "bands 0 3 0.01 3 50 0.2",
@@ -161,7 +162,7 @@ static void both_ways_agree_where_nothing_is_left_out(void **state)
 }
 
 /* Accelerations of modes above the frequencies of all columns are left out. */
-static void vibrations_of_other_columns_have_no_inertia(void **state)
+static void accelerations_above_all_frequencies_are_left_out(void **state)
 {
     fixture *f = *state;
     RITZ_OWN(ritz_pairs) pairs = {0};
@@ -257,10 +258,11 @@ static void all_allocations_may_fail(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test_setup_teardown(both_ways_agree_where_nothing_is_left_out,
-                                    set_up, tear_down),
-    cmocka_unit_test_setup_teardown(vibrations_of_other_columns_have_no_inertia,
-                                    set_up, tear_down),
+    cmocka_unit_test_setup_teardown(
+        mode_displacement_and_acceleration_agree_in_a_full_basis, set_up,
+        tear_down),
+    cmocka_unit_test_setup_teardown(
+        accelerations_above_all_frequencies_are_left_out, set_up, tear_down),
     cmocka_unit_test_setup_teardown(a_history_that_lacks_something_is_refused,
                                     set_up, tear_down),
     cmocka_unit_test_setup_teardown(peaks_have_their_sign_and_their_time,
