@@ -2,10 +2,10 @@
 """simulators.py FOLDER-OF-THE-TOOLS - docs/simulators.md can be followed.
 
 The commands of each section are run in their order, in a folder of its own
-beside `data` of the repository. Files that a section imports and that nobody
-has made are models of beams with the grids that the command names. Blocks in
-Python are run if what they import is there, and those in Octave if it is; the
-others are left to with_page.py, which runs this where more is installed. A
+next to `data` of the repository. Files that a section imports and that do not
+exist are made: models of beams with the grids that the command names. Blocks in
+Python are run if the packages that they import are installed, and blocks in
+Octave if Octave is; with_page.py runs this script where more is installed. A
 block behind a line that ends with "`NAME`:" is the file NAME. Where a section
 says "It prints `TEXT`", a block does.
 """

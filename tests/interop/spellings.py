@@ -3,8 +3,8 @@
 and NASTRAN would spell it gives one component: the same matrices, names of rows,
 places of grids and elements.
 
-The files are written here from the published layouts that docs/import.md names,
-by nothing that Ritz has. Values have ten digits, which every spelling carries, so
+The script writes the files from the published layouts that docs/import.md names,
+without any code of Ritz. Values have ten digits, which every spelling carries, so
 that components are equal in every bit; then seventeen, of which each format keeps
 its own number. Substructures are guyan if they are condensed, as Abaqus would do
 it and as CalculiX 2.23 has done it (data/substructure)."""

@@ -1,6 +1,7 @@
 #!/usr/bin/python3 -s
-"""with_exudyn.py PROGRAMS - Exudyn loads what ritz-export writes for it, finds
-in it what it would have computed itself, and keeps momentum."""
+"""with_exudyn.py PROGRAMS - Exudyn loads bodies that ritz-export writes. Their
+members agree with those that Exudyn computes itself, and simulations of them
+conserve momentum."""
 import sys
 import tempfile
 

@@ -1,8 +1,8 @@
 #!/usr/bin/python3 -s
 """with_nastran_frames.py PROGRAMS - NASTRAN-95 solves two frames that meet at
 four grids: one has its own bars, the other is our component as DMIG. Its
-frequencies are those of the same matrices in SciPy, and those of the whole
-frames but for what the reduction leaves out."""
+frequencies are those of the same matrices in SciPy, and those of the full
+frames within the error of the reduction."""
 import re
 import sys
 import tempfile
