@@ -303,7 +303,9 @@ static void the_chain_has_its_published_poles(void **state)
     ritz_reduced_free(&small[1]);
 }
 
-/* The optimum of the truncated model is off by four. */
+/* The published optima are multiples of 10: the best of each scan is better than
+   its two neighbours on either side. The optimum of the truncated model is four
+   times too high. */
 static void scans_find_the_published_optima(void **state)
 {
     static const int64_t all[] = {0, 1, 2};
@@ -323,7 +325,7 @@ static void scans_find_the_published_optima(void **state)
         for (int k = 0; k < 3; k++) {
             double c = best[mode][k];
             const ritz_scan_axis axis = {3,        all,      false,
-                                         c - 60.0, c + 60.0, 10.0};
+                                         c - 20.0, c + 20.0, 10.0};
             const ritz_scan_request request = {1, &axis, mode};
             RITZ_OWN(ritz_scan) scan = {0};
 
@@ -333,7 +335,7 @@ static void scans_find_the_published_optima(void **state)
                                    &request, &scan)
                     : ritz_scan_of(ritz_model_of_reduced(&small[k - 1], NULL),
                                    &request, &scan));
-            assert_int_equal(scan.count, 13);
+            assert_int_equal(scan.count, 5);
             assert_near(scan.value[scan.best], c, 0.0);
             if (mode == 1)
                 assert_near(100.0 * ritz_spectrum_ratio(scan.s[scan.best]),
