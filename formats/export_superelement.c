@@ -53,6 +53,7 @@ typedef struct external_element {
     int64_t *frame;        /* of each frame of the component: its CORD2R, 0 */
     double rounded;        /* of a position or axis, relative to the largest */
     ritz_nastran_displacements outputs;
+    ritz_nastran_elements stresses, forces;
     char *path[3]; /* .op4, .asm, .pch */
     char *certificate;
 } external_element;
@@ -61,6 +62,8 @@ static void external_element_free(external_element *e)
 {
     ritz_nastran_rows_free(&e->rows);
     ritz_nastran_displacements_free(&e->outputs);
+    ritz_nastran_elements_free(&e->stresses);
+    ritz_nastran_elements_free(&e->forces);
     RITZ_FREE(e->point, e->frame, e->path[0], e->path[1], e->path[2],
               e->certificate);
 }
@@ -202,6 +205,15 @@ static ritz_status make_ones(int64_t n, ritz_matrix *out)
     return ritz_sink_store(&ones, &out->A);
 }
 
+static ritz_status store_rows(const ritz_nastran_elements *elements,
+                              const ritz_nastran_rows *rows, ritz_matrix *out)
+{
+    RITZ_OWN(ritz_dense) A = {0};
+
+    RITZ_CHECK(ritz_nastran_elements_matrix(elements, rows, &A));
+    return ritz_sink_store(&A, &out->A);
+}
+
 static ritz_status make_members(const external_element *e,
                                 const ritz_matrices *list,
                                 ritz_export_report *report, ritz_matrices *out)
@@ -220,6 +232,10 @@ static ritz_status make_members(const external_element *e,
             RITZ_CHECK(make_ones(e->rows.order, to));
         } else if (strcmp(name, "MUG1") == 0 && e->outputs.count > 0) {
             RITZ_CHECK(ritz_sink_store(&e->outputs.A, &to->A));
+        } else if (strcmp(name, "MES1") == 0 && e->stresses.count > 0) {
+            RITZ_CHECK(store_rows(&e->stresses, &e->rows, to));
+        } else if (strcmp(name, "MEF1") == 0 && e->forces.count > 0) {
+            RITZ_CHECK(store_rows(&e->forces, &e->rows, to));
         } else {
             to->symmetric = true; /* one zero */
             RITZ_CHECK(ritz_sparse_new(1, 1, 0, &to->A));
@@ -386,6 +402,22 @@ static void put_sets(FILE *file, const external_element *e)
     ritz_small_end(&card);
 }
 
+/* The tables that name the rows of MUG1, MES1 and MEF1. */
+static void put_tables(FILE *file, const external_element *e)
+{
+    const int64_t columns = e->rows.order;
+
+    if (e->outputs.count > 0)
+        ritz_nastran_table_put(file, "displacement", e->outputs.A.nrow, columns,
+                               e->outputs.count, e->outputs.entry);
+    if (e->stresses.count > 0)
+        ritz_nastran_table_put(file, "stress", e->stresses.num_rows, columns,
+                               e->stresses.count, e->stresses.entry);
+    if (e->forces.count > 0)
+        ritz_nastran_table_put(file, "force", e->forces.num_rows, columns,
+                               e->forces.count, e->forces.entry);
+}
+
 static ritz_status put_part(FILE *file, const void *what)
 {
     const external_element *e = what;
@@ -398,8 +430,7 @@ static ritz_status put_part(FILE *file, const void *what)
     put_geometry(file, e);
     put_sets(file, e);
     put_points(file, e);
-    if (e->outputs.count > 0)
-        ritz_nastran_displacements_put(file, &e->outputs);
+    put_tables(file, e);
     return RITZ_OK;
 }
 
@@ -440,9 +471,14 @@ static ritz_status say_outputs(const external_element *e,
     if (e->outputs.count > 0)
         RITZ_CHECK(ritz_export_say(report,
                                    "displacements of the %" PRId64
-                                   " grids and points of ports are "
-                                   "MUG1, named by TUG1",
+                                   " grids and points of ports and recovery "
+                                   "are MUG1, named by TUG1",
                                    e->outputs.count));
+    RITZ_CHECK(ritz_nastran_elements_say(&e->outputs.recovered, "displacement",
+                                         "MUG1", report));
+    RITZ_CHECK(
+        ritz_nastran_elements_say(&e->stresses, "stress", "MES1", report));
+    RITZ_CHECK(ritz_nastran_elements_say(&e->forces, "force", "MEF1", report));
     RITZ_CHECK(ritz_nastran_rows_say_ports(
         &e->rows, e->reduced,
         "was not attached: the files hold its displacements only", report));
@@ -506,6 +542,8 @@ static ritz_status write_element(const ritz_export_object *object,
     RITZ_CHECK(list_points(&e));
     RITZ_CHECK(number_frames(&e));
     RITZ_CHECK(ritz_nastran_displacements_new(e.reduced, &e.rows, &e.outputs));
+    RITZ_CHECK(ritz_nastran_elements_new(e.reduced, "stress", &e.stresses));
+    RITZ_CHECK(ritz_nastran_elements_new(e.reduced, "force", &e.forces));
     RITZ_CHECK(ritz_export_damped(object, request, "K,M,D,K4", report, &list));
     RITZ_CHECK(make_members(&e, &list, report, &ordered));
     RITZ_CHECK(ritz_output4_style_of(request, report, &style));

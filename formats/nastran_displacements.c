@@ -1,27 +1,15 @@
 /*
- * MUG1, the displacements of the grids of all ports, six rows each, and the
- * table TUG1, which says whose they are:
- *
- *     DTI  TUG1  0  rows  columns  32767  0  7  0
- *          PHIP     7           REAL  1  ENDREC
- *     DTI  TUG1  1  1  0.  2  0.  ...  ENDREC                 for each column
- *     DTI  TUG1  2
- *          TYPE  ID  COMP  ROW  TYPE  ID  COMP  ROW
- *          1     3   6     1    2     1001  1  7  ...  ENDREC
- *
- * with type 1 of grids and 2 of scalar points, and the number of rows for COMP.
- * The table is that of files that two programs of NASTRAN wrote, and of
- * pyYeti's writer [Widrick2024].
+ * MUG1, the displacements of the grids of all ports and of those that rows of
+ * recovery name, six rows each. The table TUG1 names them (nastran_tables.c).
  */
 #include "formats/nastran_displacements.h"
 
 #include "base/alloc.h"
-#include "formats/small_field.h"
+#include "formats/nastran_items.h"
 #include "model/equations.h"
 
 #include <stdlib.h>
-
-enum { GRID_DOFS = 6 };
+#include <string.h>
 
 /* The dofs that T and the recovery know, by name. */
 typedef struct displacement_source {
@@ -71,46 +59,119 @@ static double displacement_of(const displacement_source *source, ritz_dof dof,
     return u;
 }
 
-/* The grids and scalar points of all ports, each once, ascending. */
-static ritz_status list_points(const ritz_reduced *reduced,
-                               ritz_nastran_displacements *all)
+/* A grid or point, and from which rows of quantities its displacements are. */
+typedef struct displaced_point {
+    ritz_nastran_entry entry;
+    int64_t from; /* row of the recovered ones; -1: of the component */
+} displaced_point;
+
+typedef struct displaced_points {
+    int64_t count;
+    displaced_point *at;
+} displaced_points;
+
+static void displaced_points_free(displaced_points *list)
 {
-    RITZ_OWN_ARRAY ritz_dof *dof = NULL;
-    int64_t count = 0;
-    int64_t row = 0;
+    free(list->at);
+}
+
+/* By number, those of the component first. */
+static int compare_points(const void *left, const void *right)
+{
+    const displaced_point *a = left;
+    const displaced_point *b = right;
+
+    if (a->entry.id != b->entry.id)
+        return a->entry.id < b->entry.id ? -1 : 1;
+    return (a->from > b->from) - (a->from < b->from);
+}
+
+/* The grids and scalar points of all ports and quantities, each once,
+ * ascending. */
+static ritz_status list_points(const ritz_reduced *reduced,
+                               const ritz_nastran_elements *recovered,
+                               displaced_points *out)
+{
+    int64_t count = recovered->count;
+    int64_t kept = 0;
 
     for (int64_t p = 0; p < reduced->num_ports; p++)
         count += reduced->port[p].count;
-    RITZ_CHECK_NEW(dof, count);
-    count = 0;
+    RITZ_CHECK_NEW(out->at, count);
     for (int64_t p = 0; p < reduced->num_ports; p++)
         for (int64_t k = 0; k < reduced->port[p].count; k++) {
-            dof[count] = reduced->port[p].dof[k];
-            dof[count].component = dof[count].component > 0;
-            count++;
-        }
-    count = ritz_dof_distinct(count, dof);
-    RITZ_CHECK_NEW(all->point, count);
-    for (int64_t k = 0; k < count; k++) {
-        const int64_t rows = dof[k].component > 0 ? GRID_DOFS : 1;
+            const ritz_dof dof = reduced->port[p].dof[k];
+            displaced_point *new = &out->at[out->count++];
 
-        all->point[all->count++] = (ritz_nastran_point){dof[k].grid, row, rows};
-        row += rows;
-    }
+            new->entry.type =
+                dof.component > 0 ? RITZ_NASTRAN_GRID : RITZ_NASTRAN_SCALAR;
+            new->entry.id = dof.grid;
+            new->entry.count = RITZ_NASTRAN_DOFS;
+            new->from = -1;
+        }
+    for (int64_t k = 0; k < recovered->count; k++)
+        out->at[out->count++] =
+            (displaced_point){recovered->entry[k], recovered->entry[k].first};
+    if (out->count > 1)
+        qsort(out->at, (size_t)out->count, sizeof *out->at, compare_points);
+    for (int64_t k = 0; k < out->count; k++)
+        if (k == 0 || out->at[k].entry.id != out->at[kept - 1].entry.id)
+            out->at[kept++] = out->at[k];
+    out->count = kept;
     return RITZ_OK;
 }
 
+/* Of a scalar point the first row is its displacement, the others are zero. */
 static void fill_rows(const displacement_source *source,
                       const ritz_nastran_rows *rows,
-                      const ritz_nastran_point *of, ritz_dense *A)
+                      const ritz_nastran_entry *of, ritz_dense *A)
 {
+    const bool grid = of->type == RITZ_NASTRAN_GRID;
+
     for (int64_t k = 0; k < rows->order; k++)
-        for (int64_t i = 0; i < of->count; i++) {
-            const ritz_dof dof = {of->id, of->count > 1 ? i + 1 : 0};
+        for (int64_t i = 0; i < (grid ? of->count : 1); i++) {
+            const ritz_dof dof = {of->id, grid ? i + 1 : 0};
 
             ritz_dense_col(A, k)[of->first + i] =
                 displacement_of(source, dof, rows->at[k]);
         }
+}
+
+static void copy_rows(const ritz_dense *from, const displaced_point *point,
+                      const ritz_nastran_entry *to, ritz_dense *A)
+{
+    for (int64_t k = 0; k < A->ncol; k++)
+        memcpy(ritz_dense_col(A, k) + to->first,
+               ritz_dense_col(from, k) + point->from,
+               (size_t)to->count * sizeof *A->val);
+}
+
+/* Each grid and point gets its rows. */
+static ritz_status fill_points(const displaced_points *list,
+                               const ritz_reduced *reduced,
+                               const ritz_nastran_rows *rows,
+                               ritz_nastran_displacements *all)
+{
+    RITZ_OWN(displacement_source) source = {0};
+    RITZ_OWN(ritz_dense) recovered = {0};
+    int64_t count = 0;
+
+    RITZ_CHECK(take_source(reduced, &source));
+    RITZ_CHECK(ritz_nastran_elements_matrix(&all->recovered, rows, &recovered));
+    RITZ_CHECK_NEW(all->entry, list->count);
+    for (int64_t k = 0; k < list->count; k++) {
+        all->entry[k] = list->at[k].entry;
+        all->entry[k].first = count;
+        count += all->entry[k].count;
+    }
+    all->count = list->count;
+    RITZ_CHECK(ritz_dense_new(count, rows->order, &all->A));
+    for (int64_t k = 0; k < list->count; k++)
+        if (list->at[k].from < 0)
+            fill_rows(&source, rows, &all->entry[k], &all->A);
+        else
+            copy_rows(&recovered, &list->at[k], &all->entry[k], &all->A);
+    return RITZ_OK;
 }
 
 ritz_status ritz_nastran_displacements_new(const ritz_reduced *reduced,
@@ -118,85 +179,21 @@ ritz_status ritz_nastran_displacements_new(const ritz_reduced *reduced,
                                            ritz_nastran_displacements *out)
 {
     RITZ_OWN(ritz_nastran_displacements) all = {0};
-    RITZ_OWN(displacement_source) source = {0};
-    const ritz_nastran_point *last = NULL;
+    RITZ_OWN(displaced_points) list = {0};
 
-    RITZ_CHECK(list_points(reduced, &all));
-    if (all.count > 0) {
-        last = &all.point[all.count - 1];
-        RITZ_CHECK(take_source(reduced, &source));
-        RITZ_CHECK(
-            ritz_dense_new(last->first + last->count, rows->order, &all.A));
-        for (int64_t k = 0; k < all.count; k++)
-            fill_rows(&source, rows, &all.point[k], &all.A);
-    }
+    RITZ_CHECK(
+        ritz_nastran_elements_new(reduced, "displacement", &all.recovered));
+    RITZ_CHECK(list_points(reduced, &all.recovered, &list));
+    if (list.count > 0)
+        RITZ_CHECK(fill_points(&list, reduced, rows, &all));
     RITZ_MOVE(*out, all);
     return RITZ_OK;
 }
 
 void ritz_nastran_displacements_free(ritz_nastran_displacements *all)
 {
-    free(all->point);
+    free(all->entry);
     ritz_dense_free(&all->A);
+    ritz_nastran_elements_free(&all->recovered);
     *all = (ritz_nastran_displacements){0};
-}
-
-/* ---- the table ----------------------------------------------------------- */
-
-static ritz_small_card begin_record(FILE *file, int64_t record)
-{
-    ritz_small_card card = ritz_small_begin(file, "DTI");
-
-    ritz_small_text(&card, "TUG1");
-    ritz_small_id(&card, record);
-    return card;
-}
-
-static void put_head(FILE *file, const ritz_dense *A)
-{
-    static const char *const words[] = {
-        "32767", "0", "7", "0", "PHIP", "", "7", "", "", "REAL", "1", "ENDREC"};
-    ritz_small_card card = begin_record(file, 0);
-
-    ritz_small_id(&card, A->nrow);
-    ritz_small_id(&card, A->ncol);
-    for (size_t k = 0; k < sizeof words / sizeof *words; k++)
-        ritz_small_text(&card, words[k]);
-    ritz_small_end(&card);
-}
-
-static void put_columns(FILE *file, const ritz_dense *A)
-{
-    ritz_small_card card = begin_record(file, 1);
-
-    for (int64_t k = 1; k <= A->ncol; k++) {
-        ritz_small_id(&card, k);
-        ritz_small_text(&card, "0.0");
-    }
-    ritz_small_text(&card, "ENDREC");
-    ritz_small_end(&card);
-}
-
-void ritz_nastran_displacements_put(FILE *file,
-                                    const ritz_nastran_displacements *all)
-{
-    static const char *const titles[] = {"TYPE", "ID", "COMP", "ROW"};
-    ritz_small_card card = {0};
-
-    put_head(file, &all->A);
-    put_columns(file, &all->A);
-    card = begin_record(file, 2);
-    ritz_small_skip(&card);
-    for (int k = 0; k < 8; k++)
-        ritz_small_text(&card, titles[k % 4]);
-    for (int64_t k = 0; k < all->count; k++) {
-        const ritz_nastran_point *p = &all->point[k];
-
-        ritz_small_id(&card, p->count > 1 ? 1 : 2);
-        ritz_small_id(&card, p->id);
-        ritz_small_id(&card, p->count);
-        ritz_small_id(&card, p->first + 1);
-    }
-    ritz_small_text(&card, "ENDREC");
-    ritz_small_end(&card);
 }

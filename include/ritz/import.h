@@ -401,11 +401,16 @@ typedef struct ritz_import_report {
 ritz_status ritz_import(const ritz_import_request *request, ritz_component *out,
                         ritz_import_report *report);
 
+enum { RITZ_SUPERELEMENT_RECOVERIES = 3 }; /* MUG1, MES1, MEF1 */
+
 /* Files of an external superelement of NASTRAN, as texts of a request. */
 typedef struct ritz_superelement {
     char *stiffness, *mass, *damping, *structural_damping; /* "FILE:NAME"; NULL:
                                                               it has none */
     char *bulk; /* deck that names the rows; NULL: there is none */
+    int64_t num_recoveries;
+    char *recovery[RITZ_SUPERELEMENT_RECOVERIES];      /* "stress=FILE:MES1" */
+    char *recovery_rows[RITZ_SUPERELEMENT_RECOVERIES]; /* "stress=part.pch" */
     int64_t num_others;
     char (*other)[RITZ_NAME_SIZE]; /* "MUG1 36 x 32": matrices that are none of
                                       a component */
@@ -414,12 +419,38 @@ typedef struct ritz_superelement {
 /**
  * Find the matrices in FILE.op4 (KAA, MAA, BAA, K4XX, or as NX names them), and
  * the deck FILE.pch or FILE.asm beside it. DMIG in a punch file is its own
- * deck.
+ * deck. MUG1, MES1 and MEF1 are rows to recover if a table of the deck, TUG1,
+ * TES1 or TEF1, names as many rows.
  *
- * @return RITZ_ERR_FORMAT if there is no stiffness or no mass; RITZ_ERR_FILE
+ * @param[in] bulk  another deck; NULL: the one beside the file
+ * @return RITZ_ERR_FORMAT if there is no stiffness or no mass, or such a table
+ *         is not understood; RITZ_ERR_FILE
  */
-ritz_status ritz_superelement_find(const char *path, ritz_superelement *out);
+ritz_status ritz_superelement_find(const char *path, const char *bulk,
+                                   ritz_superelement *out);
 void ritz_superelement_free(ritz_superelement *found);
+
+/* What the rows of a matrix of recovery are, by a table of NASTRAN. */
+typedef struct ritz_row_table {
+    int64_t count;
+    int64_t *place;               /* grid or element of each row */
+    char (*part)[RITZ_NAME_SIZE]; /* "T1" of a grid; "cbar.m1a" */
+} ritz_row_table;
+
+/** True if a text may have such a table: a line begins with DTI. */
+bool ritz_row_table_recognise(const char *text);
+
+/**
+ * Read the table of a kind of quantity: TUG1 of "displacement", TES1 of
+ * "stress", TEF1 of "force".
+ *
+ * @param[in]  path  for messages
+ * @param[out] out   without rows if the deck has no such table
+ * @return RITZ_ERR_FORMAT if it is not understood
+ */
+ritz_status ritz_row_table_parse(const char *path, const char *text,
+                                 const char *kind, ritz_row_table *out);
+void ritz_row_table_free(ritz_row_table *table);
 
 /** "F" of "NAME=F[,KIND]"; the caller frees @p out.
  * @return RITZ_ERR_ARGUMENT if it is not of this form */

@@ -216,12 +216,30 @@ static ritz_status take_line(const char *path, int64_t line, char *text,
     return RITZ_OK;
 }
 
+/* Names by a table of NASTRAN, of the kind of the quantity. */
+static ritz_status name_by_table(const char *path, const char *text,
+                                 ritz_quantity *out)
+{
+    RITZ_OWN(ritz_row_table) table = {0};
+
+    RITZ_CHECK(ritz_row_table_parse(path, text, out->kind, &table));
+    RITZ_REFUSE_IF(table.count != out->count, RITZ_ERR_FORMAT,
+                   "'%s' has a table of NASTRAN for %" PRId64
+                   " rows of kind %s, '%s' has %" PRId64,
+                   path, table.count, out->kind, out->name, out->count);
+    memcpy(out->place, table.place, (size_t)out->count * sizeof *out->place);
+    memcpy(out->part, table.part, (size_t)out->count * sizeof *out->part);
+    return RITZ_OK;
+}
+
 static ritz_status name_rows(const char *path, ritz_quantity *out)
 {
     RITZ_OWN_ARRAY char *text = NULL;
     int64_t line = 0, row = 0;
 
     RITZ_CHECK(ritz_text_read(path, &text));
+    if (ritz_row_table_recognise(text))
+        return name_by_table(path, text, out);
     for (char *at = text; at;) {
         char *end = strchr(at, '\n');
 

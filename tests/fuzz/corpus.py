@@ -426,6 +426,17 @@ HISTORY = {
 }
 
 
+ROW_TABLE = {
+    "fixed": "BEGIN SUPER      102\n"
+             "DTI     TES1    2\n"
+             "        TYPE    ID      COMP    ROW     TYPE    ID      COMP    ROW"
+             "\n        34      11      9       1       34      23      9       "
+             "10\n        95      7       2       19      ENDREC\n",
+    "free": "DTI,TUG1,2,,1,3,6,1\n,2,1001,6,7,ENDREC\n"
+            "DTI,TEF1,2,,2,9,77,1\n,ENDREC\nDTI,TEF1,3,,2,9,ENDREC\n",
+}
+
+
 FRAMES = {
     "frame": '<VTKFile type="UnstructuredGrid">\n<Piece NumberOfPoints="2" '
              'NumberOfCells="1">\n<DataArray Name="displacement">\n0 0 1\n0 0 2'
@@ -595,6 +606,7 @@ CORPUS = {
     "deck": DECK, "fmu": FMU, "import": IMPORT, "state-space": STATE_SPACE,
     "container": CONTAINER, "scene": SCENE, "signal": SIGNAL,
     "history": HISTORY, "frames": FRAMES, "texts": TEXTS,
+    "row-table": ROW_TABLE,
     "claims": CLAIMS, "records": RECORDS, "tracks": TRACKS,
     "commands": COMMANDS, "initial": INITIAL, "rank-tracks": RANK_TRACKS,
 }

@@ -37,6 +37,7 @@ static const fuzz_target targets[] = {
      fuzz_history},
     {"frames", "collections of VTK and their frames, as charts draw them",
      fuzz_frames},
+    {"row-table", "tables of NASTRAN that name rows", fuzz_row_table},
     {"texts", "values of options", fuzz_texts},
     {"claims", "claims files; no tool is run", fuzz_claims},
     {"records", "files of --record", fuzz_records},

@@ -105,6 +105,22 @@ void fuzz_history(const char *bytes, int64_t size)
     free(list);
 }
 
+/* --- tables of rows ------------------------------------------------------- */
+
+void fuzz_row_table(const char *bytes, int64_t size)
+{
+    (void)size; /* text ends at its NUL */
+    (void)ritz_row_table_recognise(bytes);
+    for (int k = 0; ritz_quantity_kinds[k]; k++) {
+        RITZ_OWN(ritz_row_table) table = {0};
+
+        fuzz_judge(ritz_row_table_parse("part.pch", bytes,
+                                        ritz_quantity_kinds[k], &table));
+    }
+}
+
+/* --- frames --------------------------------------------------------------- */
+
 /* A frame, or a list of them. */
 void fuzz_frames(const char *bytes, int64_t size)
 {

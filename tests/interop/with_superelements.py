@@ -14,6 +14,7 @@ try:
     import h5py
     import numpy
     import pyNastran.op4.op4
+    import scipy.io
     import scipy.sparse
     from pyNastran.bdf.bdf import BDF
     from pyyeti import cb
@@ -98,7 +99,8 @@ def check_matrices(tap, tools, title, ports):
                 for name, matrix in due.items())
             tap.check(same, f"{title}, {style}: {reader} reads them to the bit")
             tap.check(all(found[name].shape == (1, 1) and not found[name].any()
-                          for name in found if name not in due),
+                          for name in found
+                              if name not in (*due, "MES1", "MEF1")),
                       f"{title}, {style}: {reader} reads the others as a zero")
     return place
 
@@ -154,11 +156,76 @@ def check_deck_by_pyyeti(tap, tools, title, block, place, ports):
     return uset, interface
 
 
+FORCES = ("m1a", "m2a", "m1b", "m2b", "v1", "v2", "axial", "torque")
+STRESSES = ("sa1", "sa2", "sa3", "sa4", "axial", "sb1", "sb2", "sb3", "sb4")
+BARS = (11, 23)  # elements whose rows are recovered
+
+
+def write_rows(tools, columns):
+    """Rows of forces and stresses of two bars; @return options for them."""
+    random = numpy.random.default_rng(16)
+    options = []
+    for kind, items in ("force", FORCES), ("stress", STRESSES):
+        (tools.folder / f"{kind}.rows").write_text("".join(
+            f"{bar} cbar.{item}\n" for bar in BARS for item in items))
+        scipy.io.mmwrite(tools.path(f"{kind}.mtx"),
+                         random.standard_normal((2 * len(items), columns)),
+                         precision=17)
+        options += ["--recovery", f"{kind}={kind}.mtx", "--recovery-rows",
+                    f"{kind}={kind}.rows"]
+    return options
+
+
+def check_recovery(tap, tools, place):
+    """MES1 and MEF1 by both readers, their tables by pyYeti and pyNastran, and
+    all of it by ritz-import."""
+    with h5py.File(tools.path("reduced.h5")) as f:
+        column, grid = f["columns/dof"][:], f["dofs/grid"][:]
+        component = f["dofs/component"][:]
+        key = [(int(grid[c]), int(component[c])) if c >= 0 else (10**9 + j, 0)
+               for j, c in enumerate(column)]
+        at = sorted(range(len(key)), key=key.__getitem__)
+        due = {kind: f[f"quantities/{kind}/S"][:][:, at]
+               for kind in ("stress", "force")}
+    model = BDF(debug=None)
+    model.read_bdf(tools.path("assembly.bdf"), xref=False)
+    part, = model.superelement_models.values()
+    for name, kind, items in (("ES1", "stress", STRESSES),
+                              ("EF1", "force", FORCES)):
+        for reader, read in (("pyNastran", by_pynastran),
+                             ("pyYeti", by_pyyeti)):
+            found = read(tools.path("part.op4"))[f"M{name}"]
+            tap.check(found.shape == due[kind].shape
+                      and found.tobytes() == due[kind].tobytes(),
+                      f"recovery: {reader} reads M{name} to the bit")
+        rows = bulk.rddtipch(tools.path("part.pch"), f"T{name}")
+        tap.check([tuple(row) for row in rows]
+                  == [(bar, k + 1) for bar in BARS for k in range(len(items))],
+                  f"recovery: pyYeti reads T{name} as the rows of M{name}")
+        fields = [x for x in part.dti[f"T{name}"].fields[2]
+                  if x not in (None, "TYPE", "ID", "COMP", "ROW", "ENDREC")]
+        n = len(items)
+        tap.check([int(x) for x in fields]
+                  == [34, BARS[0], n, 1, 34, BARS[1], n, n + 1],
+                  f"recovery: pyNastran reads T{name}", f"{fields}")
+    tools("ritz-import", "--superelement", "part.op4", "-o", "again.h5")
+    with h5py.File(tools.path("again.h5")) as f:
+        for kind, items in ("stress", STRESSES), ("force", FORCES):
+            q = f[f"quantities/{kind}"]
+            S = scipy.sparse.csc_matrix(
+                (q["S/data"][:], q["S/indices"][:], q["S/indptr"][:]),
+                q["S"].attrs["shape"]).toarray()
+            tap.check((S == due[kind]).all() and S.shape[1] == len(place)
+                      and [x.decode() for x in q["part"][:]]
+                      == 2 * [f"cbar.{item}" for item in items],
+                      f"recovery: ritz-import reads rows of kind {kind}")
+
+
 def check_face(tap, tools):
     """Nine grids with three directions, some of them with axes of their own;
-    one port that is not attached."""
+    one port that is not attached; rows to recover."""
     block = Block((4, 2, 2), turned=True)
-    block.write(tools, "--port", "end=37-45")
+    block.write(tools, "--port", "end=37-45", *write_rows(tools, block.n))
     tools("ritz-basis", "craig-bampton", "--attach", "face", "--modes", 6,
           "block.h5", "-o", "basis.h5")
     tools("ritz-reduce", "block.h5", "basis.h5", "-o", "reduced.h5")
@@ -169,6 +236,7 @@ def check_face(tap, tools):
     place = check_matrices(tap, tools, "face", ports)
     check_deck_by_pynastran(tap, tools, "face", at, place, axes.get)
     check_deck_by_pyyeti(tap, tools, "face", at, place, ports)
+    check_recovery(tap, tools, place)
 
 
 def check_hubs(tap, tools):

@@ -200,26 +200,69 @@ static void take_lists(import_options *lists)
     request->damper = lists->damper.text;
 }
 
+/* Put a text in front of a list. */
+static ritz_status put_first(const char *text, const char *option,
+                             cli_list *list)
+{
+    RITZ_REFUSE_IF(list->count == CLI_MAX_LIST, RITZ_ERR_ARGUMENT,
+                   "--superelement has rows to recover, and --%s is given %d "
+                   "times already",
+                   option, CLI_MAX_LIST);
+    memmove(list->text + 1, list->text,
+            (size_t)list->count * sizeof *list->text);
+    list->text[0] = text;
+    list->count++;
+    return RITZ_OK;
+}
+
+/* Whether a --recovery of the command line has the name of this one. */
+static bool has_name(const cli_list *list, const char *text)
+{
+    const size_t length = strcspn(text, "=") + 1;
+
+    for (int k = 0; k < list->count; k++)
+        if (strncmp(list->text[k], text, length) == 0)
+            return true;
+    return false;
+}
+
+/* Rows that its tables name, in front of those of the command line; a quantity
+ * of the command line takes the place of one of the same name. */
+static ritz_status request_recovery(const ritz_superelement *found,
+                                    import_options *given)
+{
+    for (int64_t k = found->num_recoveries - 1; k >= 0; k--) {
+        if (has_name(&given->recovery, found->recovery[k]))
+            continue;
+        RITZ_CHECK(put_first(found->recovery[k], "recovery", &given->recovery));
+        RITZ_CHECK(put_first(found->recovery_rows[k], "recovery-rows",
+                             &given->recovery_rows));
+    }
+    return RITZ_OK;
+}
+
 /* Request the matrices of an external superelement, and its deck. */
-static ritz_status request_superelement(const char *path,
-                                        ritz_import_request *request,
+static ritz_status request_superelement(import_options *given,
                                         ritz_superelement *found)
 {
-    RITZ_CHECK_IN("--superelement", ritz_superelement_find(path, found));
+    const char *path = given->superelement;
+    ritz_import_request *request = &given->request;
+
+    RITZ_CHECK_IN("--superelement",
+                  ritz_superelement_find(path, request->bulk, found));
     request->stiffness = found->stiffness;
     request->mass = found->mass;
     request->damping = found->damping;
     request->structural_damping = found->structural_damping;
-    if (!request->bulk)
-        request->bulk = found->bulk;
+    request->bulk = found->bulk;
     RITZ_REFUSE_IF(!request->bulk && !request->dofs, RITZ_ERR_ARGUMENT,
                    "--superelement: no .pch and no .asm next to '%s' names its "
                    "rows: name a deck with --bulk",
                    path);
-    return RITZ_OK;
+    return request_recovery(found, given);
 }
 
-/* Matrices of a superelement that are none of a component. */
+/* Matrices of a superelement that are neither a component's nor recovered. */
 static void say_others(cli_run *run, const ritz_superelement *found)
 {
     char text[512] = "";
@@ -241,9 +284,9 @@ static ritz_status import_component(cli_run *run, import_options *given)
     RITZ_OWN(model) made = {.kind = MODEL_COMPONENT};
     RITZ_OWN(ritz_import_report) done = {0};
 
-    take_lists(given);
     if (given->superelement)
-        RITZ_CHECK(request_superelement(given->superelement, request, &found));
+        RITZ_CHECK(request_superelement(given, &found));
+    take_lists(given);
     RITZ_CHECK(take_inputs(run, request));
     request->sums = &sums;
     RITZ_CHECK(ritz_import(request, &made.component, &done));

@@ -134,7 +134,7 @@ static void rows_of_nastran_come_with_its_superelement(void **)
     }
     snprintf(mug1, sizeof mug1, "drift=%s:MUG1,displacement", op4);
     snprintf(mef1, sizeof mef1, "force=%s:MEF1", op4);
-    assert_ok(ritz_superelement_find(op4, &found));
+    assert_ok(ritz_superelement_find(op4, NULL, &found));
     request = (ritz_import_request){.stiffness = found.stiffness,
                                     .mass = found.mass,
                                     .bulk = found.bulk,
@@ -145,6 +145,27 @@ static void rows_of_nastran_come_with_its_superelement(void **)
     assert_int_equal(c.quantity[0].count, 36);
     assert_int_equal(c.quantity[1].count, 16);
     assert_string_equal(c.quantity[1].kind, "force");
+}
+
+/* A punch file names rows by the table of their kind. */
+static void rows_may_be_named_by_a_table_of_nastran(void **)
+{
+    const char *const punched =
+        folder_write("t.pch", "DTI,TEF1,2,,10,9,2,1\n,ENDREC\n"
+                              "DTI,TES1,2,,11,7,1,1\n,12,8,1,2,ENDREC\n");
+    const char *const recovery[] = {spell("top", put_rows(), ",stress")};
+    const char *const rows[] = {spell("top", punched, "")};
+    ritz_import_request request = request_of(recovery);
+    RITZ_OWN(ritz_import_report) report = {0};
+    RITZ_OWN(ritz_component) c = {0};
+
+    request.num_recovery_rows = 1;
+    request.recovery_rows = rows;
+    assert_ok(ritz_import(&request, &c, &report));
+    assert_int_equal(c.quantity->place[0], 7);
+    assert_string_equal(c.quantity->part[0], "celas1.s");
+    assert_int_equal(c.quantity->place[1], 8);
+    assert_string_equal(c.quantity->part[1], "celas2.s");
 }
 
 static void refuse(const char *recovery, const char *rows, ritz_status code,
@@ -173,6 +194,10 @@ static void rows_that_do_not_fit_are_refused(void **)
         {"1 a\n\nsx 3\n", "line 3 is no number of an element"},
         {"1 a\n2 b c\n", "line 2 is no number of an element"},
         {"1 a\n-2 b\n", "line 2 is no number of an element"},
+        {"DTI,TEF1,2,,10,9,2,1\n,ENDREC\n",
+         "has a table of NASTRAN for 0 rows of kind stress, 'stress' has 2"},
+        {"DTI,TES1,2,,10,9,2,1\n,34,8,9,3,ENDREC\n",
+         "has a table of NASTRAN for 11 rows of kind stress, 'stress' has 2"},
     };
 
     refuse("stress", NULL, RITZ_ERR_ARGUMENT, "'stress' is not of the form");
@@ -226,6 +251,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(rows_may_be_columns),
     cmocka_unit_test(rows_of_dependent_dofs_follow_the_others),
     cmocka_unit_test(rows_of_nastran_come_with_its_superelement),
+    cmocka_unit_test(rows_may_be_named_by_a_table_of_nastran),
     cmocka_unit_test(rows_that_do_not_fit_are_refused),
     cmocka_unit_test(two_quantities_of_one_name_are_refused),
     cmocka_unit_test(all_allocations_may_fail),

@@ -230,7 +230,7 @@ static void files_are_found_by_their_names(void **state)
     (void)state;
     write_members("se.op4");
     folder_write("se.asm", deck);
-    assert_ok(ritz_superelement_find(folder_path("se.op4"), &found));
+    assert_ok(ritz_superelement_find(folder_path("se.op4"), NULL, &found));
     assert_non_null(strstr(found.stiffness, "se.op4:KXX"));
     assert_non_null(strstr(found.mass, "se.op4:MXX"));
     assert_null(found.damping);
@@ -240,10 +240,10 @@ static void files_are_found_by_their_names(void **state)
     assert_string_equal(found.other[0], "MUG1 2 x 2");
     ritz_superelement_free(&found);
     folder_write("se.pch", deck);
-    assert_ok(ritz_superelement_find(folder_path("se.op4"), &found));
+    assert_ok(ritz_superelement_find(folder_path("se.op4"), NULL, &found));
     assert_string_equal(found.bulk, folder_path("se.pch"));
     write_members("alone.op4");
-    assert_ok(ritz_superelement_find(folder_path("alone.op4"), &alone));
+    assert_ok(ritz_superelement_find(folder_path("alone.op4"), NULL, &alone));
     assert_null(alone.bulk);
 }
 
@@ -258,7 +258,7 @@ static void a_punch_file_with_dmig_is_its_own_deck(void **state)
     RITZ_OWN(ritz_superelement) found = {0};
 
     (void)state;
-    assert_ok(ritz_superelement_find(path, &found));
+    assert_ok(ritz_superelement_find(path, NULL, &found));
     assert_non_null(strstr(found.stiffness, "punched.pch:KAAX"));
     assert_string_equal(found.bulk, path);
     assert_null(found.structural_damping);
@@ -271,15 +271,16 @@ static void what_is_no_superelement_is_refused(void **state)
     ritz_superelement found = {0};
 
     (void)state;
-    assert_fails(ritz_superelement_find(folder_path("absent.op4"), &found),
-                 RITZ_ERR_FILE, "absent.op4");
+    assert_fails(
+        ritz_superelement_find(folder_path("absent.op4"), NULL, &found),
+        RITZ_ERR_FILE, "absent.op4");
     folder_write("c.pch", "DMIG,KGG,0,6,2\nDMIG,KGG,1,1,,1,1,2.\n");
-    assert_fails(ritz_superelement_find(folder_path("c.pch"), &found),
+    assert_fails(ritz_superelement_find(folder_path("c.pch"), NULL, &found),
                  RITZ_ERR_FORMAT,
                  "c.pch' has no stiffness of an external superelement, KAA, "
                  "KXX or KAAX: name its matrices with --stiffness and --mass");
     folder_write("c.pch", "DMIG,KAAX,0,6,2\nDMIG,KAAX,1,1,,1,1,2.\n");
-    assert_fails(ritz_superelement_find(folder_path("c.pch"), &found),
+    assert_fails(ritz_superelement_find(folder_path("c.pch"), NULL, &found),
                  RITZ_ERR_FORMAT, "has no mass of an external superelement");
     assert_null(found.stiffness);
 }
@@ -300,11 +301,11 @@ static void a_real_superelement_has_its_printed_frequencies(void **state)
     (void)state;
     if (!solvers_find(CSUPER "inboard.op4", path))
         skip();
-    assert_ok(ritz_superelement_find(path, &found));
+    assert_ok(ritz_superelement_find(path, NULL, &found));
     assert_null(found.damping);
     assert_null(found.structural_damping);
-    assert_int_equal(found.num_others, 3); /* VA, MUG1, MEF1 */
-    assert_string_equal(found.other[2], "MEF1 16 x 32");
+    assert_int_equal(found.num_others, 1);
+    assert_string_equal(found.other[0], "VA 32 x 1");
     request.stiffness = found.stiffness;
     request.mass = found.mass;
     request.bulk = found.bulk;
@@ -321,6 +322,100 @@ static void a_real_superelement_has_its_printed_frequencies(void **state)
             printed[k], half[k] + 3e-8 * printed[k]);
 }
 
+/* Bars 10 and 97 have constant shear: V1 = (M1A - M1B) / L, with lengths of 300
+   and of 30 along x and 150 along y and z; the numbers are of single precision.
+ */
+static void check_bars(const ritz_quantity *force)
+{
+    static const int64_t element[] = {10, 97};
+    const double length[] = {300.0, sqrt(30.0 * 30.0 + 2.0 * 150.0 * 150.0)};
+
+    for (int64_t i = 0; i < 16; i++)
+        assert_int_equal(force->place[i], element[i / 8]);
+    assert_string_equal(force->part[0], "cbar.m1a");
+    assert_string_equal(force->part[12], "cbar.v1");
+    for (int64_t b = 0; b < 4; b++)
+        for (int64_t j = 0; j < 32; j++) {
+            const int64_t first = 8 * (b / 2) + b % 2;
+            const ritz_sparse *S = &force->S;
+            const double a = matrix_entry(S, S->val, first, j);
+            const double end = matrix_entry(S, S->val, first + 2, j);
+            const double shear = matrix_entry(S, S->val, first + 4, j);
+
+            assert_near(shear * length[b / 2], a - end,
+                        2e-5 * (fabs(a) + fabs(end)) + 1e-3);
+        }
+}
+
+/* MUG1 and MEF1 of the same file; TUG1 and TEF1 name their rows. */
+static void a_real_superelement_brings_its_rows_to_recover(void **state)
+{
+    char path[512];
+    RITZ_OWN(ritz_superelement) found = {0};
+    RITZ_OWN(ritz_import_report) report = {0};
+    RITZ_OWN(ritz_component) c = {0};
+    ritz_import_request request = {0};
+
+    (void)state;
+    if (!solvers_find(CSUPER "inboard.op4", path))
+        skip();
+    assert_ok(ritz_superelement_find(path, NULL, &found));
+    assert_int_equal(found.num_recoveries, 2);
+    request = (ritz_import_request){
+        .stiffness = found.stiffness,
+        .mass = found.mass,
+        .bulk = found.bulk,
+        .num_recoveries = 2,
+        .recovery = (const char *const *)found.recovery,
+        .num_recovery_rows = 2,
+        .recovery_rows = (const char *const *)found.recovery_rows};
+    assert_ok(ritz_import(&request, &c, &report));
+    assert_int_equal(c.num_quantities, 2);
+    assert_string_equal(c.quantity[0].kind, "displacement");
+    assert_int_equal(c.quantity[0].count, 36);
+    assert_int_equal(c.quantity[0].place[35], 27);
+    assert_string_equal(c.quantity[0].part[35], "R3");
+    for (int64_t k = 0; k < 6; k++) /* grid 3 has these coordinates itself */
+        assert_true(matrix_entry(&c.quantity[0].S, c.quantity[0].S.val, k, k) ==
+                    1.0);
+    assert_string_equal(c.quantity[1].kind, "force");
+    check_bars(&c.quantity[1]);
+}
+
+/* A table that names another number of rows names none. */
+static void rows_without_a_fitting_table_are_not_taken(void **state)
+{
+    static const char *const tables[] = {"", "DTI,TUG1,2,,1,9,6,1\n,ENDREC\n",
+                                         "DTI,TEF1,2,,34,9,2,1\n,ENDREC\n"};
+    RITZ_OWN(ritz_superelement) named = {0};
+    ritz_superelement bad = {0};
+    char text[400];
+
+    (void)state;
+    write_members("se.op4");
+    for (size_t k = 0; k < sizeof tables / sizeof *tables; k++) {
+        RITZ_OWN(ritz_superelement) found = {0};
+
+        snprintf(text, sizeof text, "%s%s", deck, tables[k]);
+        folder_write("se.pch", text);
+        assert_ok(ritz_superelement_find(folder_path("se.op4"), NULL, &found));
+        assert_int_equal(found.num_recoveries, 0);
+        assert_string_equal(found.other[0], "MUG1 2 x 2");
+    }
+    folder_write("own.bdf", "DTI,TUG1,2,,2,9,2,1\n,ENDREC\n");
+    assert_ok(ritz_superelement_find(folder_path("se.op4"),
+                                     folder_path("own.bdf"), &named));
+    assert_int_equal(named.num_recoveries, 1);
+    assert_int_equal(named.num_others, 0);
+    assert_non_null(strstr(named.recovery[0], "displacement="));
+    assert_non_null(strstr(named.recovery_rows[0], "own.bdf"));
+    folder_write("own.bdf", "DTI,TUG1,2,,7,9,2,1\n,ENDREC\n");
+    assert_fails(ritz_superelement_find(folder_path("se.op4"),
+                                        folder_path("own.bdf"), &bad),
+                 RITZ_ERR_FORMAT, "own.bdf', line 1: TUG1 has type 7 of 9");
+    assert_null(bad.stiffness);
+}
+
 static ritz_status import_all(const ritz_import_request *request)
 {
     RITZ_OWN(ritz_import_report) report = {0};
@@ -333,7 +428,7 @@ static ritz_status find_once(void)
 {
     RITZ_OWN(ritz_superelement) found = {0};
 
-    return ritz_superelement_find(folder_path("se.op4"), &found);
+    return ritz_superelement_find(folder_path("se.op4"), NULL, &found);
 }
 
 static void every_allocation_may_fail(void **state)
@@ -362,6 +457,8 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_punch_file_with_dmig_is_its_own_deck),
     cmocka_unit_test(what_is_no_superelement_is_refused),
     cmocka_unit_test(a_real_superelement_has_its_printed_frequencies),
+    cmocka_unit_test(a_real_superelement_brings_its_rows_to_recover),
+    cmocka_unit_test(rows_without_a_fitting_table_are_not_taken),
     cmocka_unit_test(every_allocation_may_fail),
 };
 
