@@ -277,12 +277,63 @@ static ritz_status keep_columns(const floating_source *s, ritz_floating *f)
     return RITZ_OK;
 }
 
+static int compare_sizes(const void *left, const void *right)
+{
+    const double a = *(const double *)left, b = *(const double *)right;
+
+    return (a > b) - (a < b);
+}
+
+/* Among the eigenvalues of an indefinite stiffness, which ascend, those of
+   `count` motions without stiffness follow `*below` negative ones. */
+static ritz_status count_free(const ritz_pairs *pairs, int64_t *below,
+                              int64_t *count)
+{
+    const int64_t n = pairs->Phi.ncol;
+    RITZ_OWN_ARRAY double *size = NULL;
+
+    RITZ_CHECK_NEW(size, n);
+    for (int64_t k = 0; k < n; k++)
+        size[k] = fabs(pairs->lambda[k]);
+    qsort(size, (size_t)n, sizeof *size, compare_sizes);
+    *count = ritz_eigen_rigid(n, size, size[n - 1]);
+    for (*below = 0; *count > 0 && pairs->lambda[*below] < -size[*count - 1];)
+        ++*below;
+    return RITZ_OK;
+}
+
+/* Motions without stiffness come first, also of an indefinite stiffness. */
+static ritz_status put_free_first(ritz_pairs *pairs)
+{
+    const int64_t n = pairs->Phi.ncol;
+    RITZ_OWN(ritz_dense) Phi = {0};
+    RITZ_OWN_ARRAY double *lambda = NULL;
+    RITZ_OWN_ARRAY int64_t *at = NULL;
+    int64_t below = 0, count = 0;
+
+    if (pairs->num_rigid > 0 || n == 0 || pairs->lambda[0] >= 0.0)
+        return RITZ_OK;
+    RITZ_CHECK(count_free(pairs, &below, &count));
+    RITZ_CHECK_NEW(at, n);
+    RITZ_CHECK_COPY(lambda, pairs->lambda, n);
+    for (int64_t k = 0; k < n; k++)
+        at[k] = k < count ? below + k : k < count + below ? k - count : k;
+    for (int64_t k = 0; k < n; k++)
+        pairs->lambda[k] = lambda[at[k]];
+    RITZ_CHECK(ritz_dense_pick(&pairs->Phi, n, at, &Phi));
+    ritz_dense_free(&pairs->Phi);
+    RITZ_MOVE(pairs->Phi, Phi);
+    pairs->num_rigid = count;
+    return RITZ_OK;
+}
+
 static ritz_status diagonalise_body(const floating_source *s, ritz_floating *f)
 {
     RITZ_OWN(ritz_dense) Z = {0};
     RITZ_OWN(ritz_pairs) pairs = {0};
 
     RITZ_CHECK(ritz_eigen_dense(&s->model.K, &s->model.M, &pairs));
+    RITZ_CHECK(put_free_first(&pairs));
     RITZ_REFUSE_IF(pairs.num_rigid == pairs.Phi.ncol, RITZ_ERR_ARGUMENT,
                    "no mode is flexible: a rigid body needs no file, but mass "
                    "and inertia");

@@ -227,6 +227,63 @@ static void mean_axes_have_no_momentum(void **state)
                     100.0 * rounding * ritz_dense_max(&f.shape));
 }
 
+/* K - 2 lambda M phi phi'M: the second flexible mode gets -lambda. */
+static ritz_status make_unstable(ritz_reduced *reduced, double *hertz)
+{
+    RITZ_OWN(ritz_pairs) pairs = {0};
+    RITZ_OWN(ritz_dense) MPhi = {0};
+
+    RITZ_CHECK(ritz_eigen_dense(&reduced->K, &reduced->M, &pairs));
+    RITZ_CHECK(ritz_dense_mul(&reduced->M, &pairs.Phi, &MPhi));
+    for (int64_t j = 0; j < MPhi.nrow; j++)
+        for (int64_t i = 0; i < MPhi.nrow; i++)
+            ritz_dense_col(&reduced->K, j)[i] -= 2.0 * pairs.lambda[7] *
+                                                 ritz_dense_col(&MPhi, 7)[i] *
+                                                 ritz_dense_col(&MPhi, 7)[j];
+    hertz[0] = ritz_eigen_hertz(pairs.lambda[7]);
+    hertz[1] = ritz_eigen_hertz(pairs.lambda[9]);
+    return RITZ_OK;
+}
+
+/* Rigid motions of an indefinite stiffness come behind negative eigenvalues. */
+static void an_unstable_body_leaves_its_rigid_motions_to_the_frame(void **state)
+{
+    (void)state;
+    RITZ_OWN(ritz_component) body = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
+    RITZ_OWN(ritz_floating) f = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
+    double hertz[2] = {0.0};
+
+    assert_ok(free_chain(true, &body, &reduced));
+    assert_ok(make_unstable(&reduced, hertz));
+    assert_ok(ritz_floating_of(&reduced, &requests[0], &f));
+    assert_int_equal(f.num_rigid, 6);
+    assert_int_equal(f.V.ncol, FREE_FLEXIBLE);
+    assert_near(f.lowest_hz, -hertz[0], 1e-9 * hertz[0]);
+    assert_near(f.highest_hz, hertz[1], 1e-9 * hertz[1]);
+    assert_ok(ritz_eigen_dense(&f.K, &f.M, &pairs));
+    assert_near(ritz_eigen_hertz(pairs.lambda[0]), -hertz[0], 1e-9 * hertz[0]);
+}
+
+static ritz_status convert_unstable(void)
+{
+    ritz_component body = {0};
+    ritz_reduced reduced = {0};
+    ritz_floating f = {0};
+    double hertz[2];
+    ritz_status status = free_chain(true, &body, &reduced);
+
+    if (status == RITZ_OK)
+        status = make_unstable(&reduced, hertz);
+    if (status == RITZ_OK)
+        status = ritz_floating_of(&reduced, &requests[0], &f);
+    ritz_floating_free(&f);
+    ritz_reduced_free(&reduced);
+    ritz_component_free(&body);
+    return status;
+}
+
 static ritz_status convert(void *unused)
 {
     const ritz_floating_request request = {"13", "tangent"};
@@ -248,6 +305,7 @@ static void every_allocation_may_fail(void **state)
 {
     (void)state;
     assert_survives_every_allocation(convert(NULL));
+    assert_survives_every_allocation(convert_unstable());
 }
 
 static void frames_that_do_not_exist_are_refused(void **state)
@@ -282,6 +340,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_tangent_frame_holds_its_node),
     cmocka_unit_test(mean_axes_have_no_momentum),
     cmocka_unit_test(frames_that_do_not_exist_are_refused),
+    cmocka_unit_test(an_unstable_body_leaves_its_rigid_motions_to_the_frame),
     cmocka_unit_test(every_allocation_may_fail),
 };
 
