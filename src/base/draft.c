@@ -9,6 +9,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <poll.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stdatomic.h>
@@ -65,8 +66,15 @@ static void strike_name(const char *name)
     }
 }
 
+/* Whether files that belong together are being renamed: a signal meanwhile
+   would leave some of them. It may come to a thread that does not hold signals
+   back, as of a BLAS library; this one then waits. */
+static atomic_bool naming;
+
 void ritz_draft_discard_all(void)
 {
+    while (atomic_load(&naming))
+        poll(NULL, 0, 1);
     for (place *p = atomic_load(&places); p; p = p->next) {
         const char *name = atomic_load(&p->name);
 
@@ -527,6 +535,23 @@ static ritz_status name_draft(ritz_draft *draft)
     return RITZ_OK;
 }
 
+/* Rename drafts up to the first that fails; a signal is held back until all
+   have their names. */
+static ritz_status rename_each(int64_t count, ritz_draft *draft, int64_t *named)
+{
+    sigset_t all, before;
+    ritz_status status = RITZ_OK;
+
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, &before);
+    atomic_store(&naming, true);
+    for (; *named < count && status == RITZ_OK; *named += status == RITZ_OK)
+        status = name_draft(&draft[*named]);
+    atomic_store(&naming, false);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return status;
+}
+
 /*
  * Rename either all drafts or none, after the contents of all are on the disk.
  * If a rename fails, or a name cannot be written to the disk, the new files are
@@ -539,8 +564,7 @@ static ritz_status name_all(int64_t count, ritz_draft *draft)
 
     for (int64_t k = 0; k < count; k++)
         RITZ_CHECK(sync_bytes(&draft[k]));
-    for (; named < count && status == RITZ_OK; named += status == RITZ_OK)
-        status = name_draft(&draft[named]);
+    status = rename_each(count, draft, &named);
     for (int64_t k = 0; k < count && status == RITZ_OK; k++)
         status = sync_name(&draft[k]);
     for (int64_t k = 0; k < named && status != RITZ_OK; k++)

@@ -98,7 +98,8 @@ ritz_status ritz_draft_settle(bool keep);
 
 /**
  * Remove the files of all drafts that have been neither renamed nor freed, for
- * a signal handler that then ends the process. The function is
+ * a signal handler that then ends the process. Where files that belong together
+ * are being renamed, it waits until all have their names. The function is
  * async-signal-safe and does not change the drafts themselves.
  */
 void ritz_draft_discard_all(void);

@@ -446,6 +446,34 @@ static void a_failure_before_the_rename_leaves_the_old_file(void **)
     remove(path);
 }
 
+static void end_process(int number)
+{
+    ritz_draft_discard_all();
+    _exit(number);
+}
+
+/* The signal comes before the first rename, and the process ends after the
+   last one. */
+static void a_signal_leaves_all_files_of_a_set(void **state)
+{
+    int outcome = 0;
+    pid_t writer = fork();
+
+    (void)state;
+    if (writer == 0) {
+        signal(SIGTERM, end_process);
+        faults_signal = SIGTERM;
+        _exit(write_two(NULL) == RITZ_OK ? 0 : 1);
+    }
+    assert_int_equal(waitpid(writer, &outcome, 0), writer);
+    assert_true(WIFEXITED(outcome));
+    assert_int_equal(WEXITSTATUS(outcome), SIGTERM);
+    assert_int_equal(get(path), '1');
+    assert_int_equal(get("test_draft.out.h5"), '2');
+    remove("test_draft.out.h5");
+    remove(path);
+}
+
 /* Number of calls of fsync when one file is published. */
 static int count_syncs(void)
 {
@@ -591,6 +619,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_failed_sync_or_rename_leaves_no_file),
     cmocka_unit_test(a_failure_leaves_neither_of_two_held_files),
     cmocka_unit_test(a_failure_before_the_rename_leaves_the_old_file),
+    cmocka_unit_test(a_signal_leaves_all_files_of_a_set),
     cmocka_unit_test(syncs_are_left_out_on_request),
     cmocka_unit_test(drafts_of_killed_writers_are_swept),
     cmocka_unit_test(drafts_of_living_writers_stay),
