@@ -1,10 +1,11 @@
 /*
- * Names and units of an FMU's inputs and outputs.
+ * Finds names and units of the inputs and outputs of an FMU.
  *
- * A reduced component keeps neither grid nor direction of an input, but its
- * column of B is the row of T of the dof that it acts on; so are rows of C, Cv
- * and Ca. Where a row of T is the same, its dof says whether that is a force or
- * a moment, a translation or a rotation.
+ * A reduced component does not store the grid and direction of an input. But if
+ * the input is a unit force on dof i, its column of T'B is row i of T, and so
+ * is the row of C, Cv or Ca of an output that is the motion of dof i. So the
+ * row of T with these entries gives the dof, and the dof tells force from
+ * moment, and translation from rotation.
  */
 #include "base/alloc.h"
 #include "base/text.h"
@@ -16,24 +17,43 @@
 
 /* ---- names -------------------------------------------------------------- */
 
-/* Names that are there so far. */
+/* The names that are in use: time, states, derivatives, and as many inputs and
+   outputs as have been named so far. */
 typedef struct names_taken {
     const ritz_fmu *fmu;
     int64_t inputs, outputs;
 } names_taken;
 
+/* Whether the first letters of a text are the name of a state. */
+static bool is_state(const ritz_fmu *fmu, const char *text, size_t length)
+{
+    for (int64_t k = 0; k < fmu->num_states; k++)
+        if (strncmp(fmu->state[k], text, length) == 0 &&
+            fmu->state[k][length] == '\0')
+            return true;
+    return false;
+}
+
+/* Whether a name is that of a state or "der(STATE)". */
+static bool is_state_or_rate(const ritz_fmu *fmu, const char *name)
+{
+    static const char before[] = "der(";
+    const size_t skipped = sizeof before - 1;
+    const size_t length = strlen(name);
+
+    if (length > skipped + 1 && strncmp(name, before, skipped) == 0 &&
+        name[length - 1] == ')' &&
+        is_state(fmu, name + skipped, length - skipped - 1))
+        return true;
+    return length < RITZ_NAME_SIZE && is_state(fmu, name, length);
+}
+
 static bool is_taken(const names_taken *t, const char *name)
 {
     const ritz_fmu *fmu = t->fmu;
-    char rate[RITZ_NAME_SIZE + 8];
 
-    if (strcmp(name, "time") == 0)
+    if (strcmp(name, "time") == 0 || is_state_or_rate(fmu, name))
         return true;
-    for (int64_t k = 0; k < fmu->num_states; k++) {
-        snprintf(rate, sizeof rate, "der(%s)", fmu->state[k]);
-        if (strcmp(name, fmu->state[k]) == 0 || strcmp(name, rate) == 0)
-            return true;
-    }
     for (int64_t k = 0; k < t->inputs; k++)
         if (strcmp(name, fmu->input[k].name) == 0)
             return true;
@@ -43,7 +63,8 @@ static bool is_taken(const names_taken *t, const char *name)
     return false;
 }
 
-/* Bytes of whole letters of a clean text that fit @p room. */
+/* The number of bytes, at most @p room, of the first whole letters of a
+   text. */
 static int fit_letters(const char *text, int room)
 {
     int length = 0;
@@ -58,8 +79,8 @@ static int fit_letters(const char *text, int room)
     return length;
 }
 
-/* The name, or with a word and a number behind it if it has been taken.
- * @return whether it is another one */
+/* Choose the given name or, if it is taken, the name with a word and a number
+ * behind it: "tip (output 2)". @return whether the name is changed */
 static bool choose_name(const names_taken *t, const char *given,
                         const char *word, char out[RITZ_NAME_SIZE])
 {
@@ -82,7 +103,7 @@ static bool choose_name(const names_taken *t, const char *given,
 
 /* ---- units -------------------------------------------------------------- */
 
-/* A label of --units, and how many SI units it is, a power of ten. */
+/* A unit that --units may name, which is 10^power SI units. */
 typedef struct unit_label {
     const char *text;
     int power;
@@ -97,10 +118,10 @@ static const unit_label times[] = {{"s", 0}, {"ms", -3}, {0}};
 enum { MASS, LENGTH, TIME, DIMENSIONS };
 
 typedef struct unit_labels {
-    unit_label of[DIMENSIONS]; /* text NULL: units are not known */
+    unit_label of[DIMENSIONS]; /* {0} if the units are not known */
 } unit_labels;
 
-/* The label of a text's first letters; {0}: there is none. */
+/* The label that is the first letters of a text; {0} if there is none. */
 static unit_label find_label(const unit_label *among, const char *text,
                              size_t length)
 {
@@ -111,7 +132,7 @@ static unit_label find_label(const unit_label *among, const char *text,
     return *among;
 }
 
-/* "kg mm s" */
+/* Read units such as "kg mm s". */
 static unit_labels read_labels(const char *text)
 {
     static const unit_label *const tables[DIMENSIONS] = {masses, lengths,
@@ -130,7 +151,7 @@ static unit_labels read_labels(const char *text)
     return *text ? none : found;
 }
 
-/* Name of a force: N, or its units in words. */
+/* Name of the unit of force: "N", or for example "kg.mm/s2". */
 static void name_force(const unit_labels *l, int power, char out[24])
 {
     if (power == 0)
@@ -156,7 +177,7 @@ static ritz_fmu_unit force_unit(const unit_labels *l, bool rotates)
     return u;
 }
 
-/* Unit of a motion, or its rate, or the rate of that. */
+/* Unit of a translation or rotation (order 0), its velocity or acceleration. */
 static ritz_fmu_unit motion_unit(const unit_labels *l, bool rotates, int order)
 {
     static const char *const per[] = {"", "/", "/"};
@@ -171,7 +192,8 @@ static ritz_fmu_unit motion_unit(const unit_labels *l, bool rotates, int order)
     return u;
 }
 
-/* Component, 1 to 6, of the dof whose row of T has these entries; 0: none. */
+/* Direction, 1 to 6, of the dof whose row of T has these entries. 0 if there is
+   no such dof, or translations and rotations that have the same entries. */
 static int find_component(const ritz_reduced *reduced, const double *entry,
                           int64_t stride)
 {
@@ -214,7 +236,7 @@ static void describe_input(const ritz_reduced *reduced, const unit_labels *l,
         port->unit = force_unit(l, component > 3);
 }
 
-/* Whether row i of C has an entry. */
+/* Whether row i of C is not zero. */
 static bool has_row(const ritz_dense *C, int64_t i)
 {
     for (int64_t j = 0; j < C->ncol; j++)
