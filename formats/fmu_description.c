@@ -1,9 +1,15 @@
 /*
- * modelDescription.xml of FMI 2.0 [FmiTwo2024] and FMI 3.0
- * [FmiThree2024]. Variables are the time, inputs, outputs, states and
- * derivatives of states; value references count them from 0, as
- * fmu/instance.h says. Dependencies are the entries of A, B, C and D that are
- * not 0, all of them constant factors.
+ * Makes modelDescription.xml of FMI 2.0 [FmiTwo2024] and 3.0 [FmiThree2024].
+ * The variables are the time, the inputs, the outputs, the states and their
+ * derivatives, in this order; value references count them from 0, as in
+ * fmu/instance.h.
+ *
+ * An output or derivative depends on the inputs and states for which its row of
+ * A, B, C or D is not 0, by constant factors. A long list of these says little,
+ * and of a dense A the lists would grow with the square of the order. Without a
+ * list an importer assumes that a variable depends on all inputs and states. So
+ * a list of more than MOST_LISTED is left out, but not of an output that some
+ * inputs do not act on directly: importers look for algebraic loops there.
  */
 #include "base/alloc.h"
 #include "formats/fmu.h"
@@ -45,8 +51,8 @@ static void put_head(const fmu_page *p)
         ritz_version(), two ? " numberOfEventIndicators=\"0\"" : "");
 }
 
-/* What the program can do, in the words of either version. An importer of FMI
- * 2 is told that its functions for memory are not called. */
+/* The capabilities of the program. canNotUseMemoryManagementFunctions says that
+ * the program does not call the importer's functions for memory. */
 static void put_interfaces(const fmu_page *p)
 {
     static const char two[] = " canNotUseMemoryManagementFunctions=\"true\""
@@ -71,7 +77,7 @@ static void put_interfaces(const fmu_page *p)
 
 /* ---- units -------------------------------------------------------------- */
 
-/* Unit k of time, inputs and outputs, in turn. */
+/* The unit of time (k = 0), of the inputs, then of the outputs. */
 static const ritz_fmu_unit *unit_at(const ritz_fmu *fmu, int64_t k)
 {
     if (k == 0)
@@ -125,8 +131,8 @@ static void put_units(const fmu_page *p)
 typedef struct fmu_variable {
     int64_t reference;
     const char *name, *says, *causality, *unit;
-    const char *more; /* attributes of the fmu_variable */
-    char numbers[96]; /* attributes that FMI 2 has in <Real> */
+    const char *more; /* further attributes, of <ScalarVariable> in FMI 2 */
+    char numbers[96]; /* further attributes, of <Real> in FMI 2 */
 } fmu_variable;
 
 static void put_variable(const fmu_page *p, const fmu_variable *v)
@@ -196,13 +202,15 @@ static void put_variables(const fmu_page *p)
 
 /* ---- dependencies ------------------------------------------------------- */
 
-/* One unknown: entries of its row of A or C, and of B or D. */
+enum { MOST_LISTED = 100 };
+
+/* An output or a derivative, and its row of the matrices. */
 typedef struct fmu_unknown {
     int64_t reference;
-    const ritz_dense *by_states; /* C; NULL: the row of a block of A */
-    const ritz_dense *by_inputs;
+    const ritz_dense *by_states; /* C of an output; NULL of a derivative */
+    const ritz_dense *by_inputs; /* D of an output, B of a derivative */
     int64_t row;
-    int64_t block, first; /* of A: its states begin at `first` */
+    int64_t block, first; /* of a derivative: block of A, and its first state */
 } fmu_unknown;
 
 static double state_entry(const fmu_page *p, const fmu_unknown *u, int64_t j)
@@ -217,7 +225,33 @@ static double state_entry(const fmu_page *p, const fmu_unknown *u, int64_t j)
     return ritz_fmu_entry(fmu, u->block, u->row - u->first, j - u->first);
 }
 
-/* @p text stands for each dependency; NULL: its number. */
+/* Whether an unknown depends on input j or, behind the inputs, on a state. */
+static bool depends(const fmu_page *p, const fmu_unknown *u, int64_t j)
+{
+    const int64_t state = j - p->fmu->num_inputs;
+
+    return (state < 0 ? ritz_dense_col(u->by_inputs, j)[u->row]
+                      : state_entry(p, u, state)) != 0.0;
+}
+
+/* Whether the dependencies of an unknown are listed. */
+static bool is_listed(const fmu_page *p, const fmu_unknown *u)
+{
+    const int64_t inputs = p->fmu->num_inputs;
+    int64_t count = 0;
+    bool all_inputs = true;
+
+    for (int64_t j = 0; j < inputs + p->fmu->num_states; j++) {
+        const bool there = depends(p, u, j);
+
+        count += there;
+        all_inputs = all_inputs && (there || j >= inputs);
+    }
+    return count <= MOST_LISTED || (u->by_states && !all_inputs);
+}
+
+/* Write the number of each dependency or, if @p text is given, this text for
+ * each. */
 static void put_dependencies(const fmu_page *p, const fmu_unknown *u,
                              const char *text)
 {
@@ -227,10 +261,8 @@ static void put_dependencies(const fmu_page *p, const fmu_unknown *u,
 
     for (int64_t j = 0; j < fmu->num_inputs + fmu->num_states; j++) {
         const int64_t state = j - fmu->num_inputs;
-        const double entry = state < 0 ? ritz_dense_col(u->by_inputs, j)[u->row]
-                                       : state_entry(p, u, state);
 
-        if (entry == 0.0)
+        if (!depends(p, u, j))
             continue;
         if (text)
             fprintf(p->file, "%s%s", blank, text);
@@ -250,11 +282,14 @@ static void put_unknown(const fmu_page *p, const char *element,
     else
         fprintf(p->file, "    <%s valueReference=\"%" PRId64 "\"", element,
                 u->reference);
-    fputs(" dependencies=\"", p->file);
-    put_dependencies(p, u, NULL);
-    fputs("\" dependenciesKind=\"", p->file);
-    put_dependencies(p, u, "constant");
-    fputs("\"/>\n", p->file);
+    if (is_listed(p, u)) {
+        fputs(" dependencies=\"", p->file);
+        put_dependencies(p, u, NULL);
+        fputs("\" dependenciesKind=\"", p->file);
+        put_dependencies(p, u, "constant");
+        fputc('"', p->file);
+    }
+    fputs("/>\n", p->file);
 }
 
 static void put_outputs(const fmu_page *p, const char *element)
@@ -283,7 +318,8 @@ static void put_derivatives(const fmu_page *p, const char *element)
     }
 }
 
-/* FMI 2 has a list of each kind, which must not be empty. */
+/* Put the unknowns of one kind. FMI 2 has an element around them, which must
+ * not be empty. */
 static void put_list(const fmu_page *p, const char *name, bool outputs,
                      bool derivatives)
 {

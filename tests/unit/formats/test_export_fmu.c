@@ -3,9 +3,11 @@
  * description is compared with the text of the standard's examples, and the
  * numbers are put to use by the program that an importer loads.
  */
+#include "base/alloc.h"
 #include "faults.h"
 #include "fmu_driver.h"
 #include "folder.h"
+#include "formats/fmu.h"
 #include "masses.h"
 #include "scenes.h"
 #include "testing.h"
@@ -376,6 +378,59 @@ static void dependencies_are_the_entries_that_are_not_zero(void **state)
     }
 }
 
+/* x' = A x + B u, y = C x + D u with matrices of ones, but D_21 = 0. */
+static ritz_status make_dense_fmu(int64_t n, ritz_fmu *out)
+{
+    RITZ_OWN(ritz_fmu)
+    fmu = {.num_inputs = 2, .num_outputs = 2, .num_states = n, .num_blocks = 1};
+
+    RITZ_CHECK_NEW(fmu.block, 1);
+    RITZ_CHECK_NEW(fmu.nominal, n);
+    RITZ_CHECK_NEW(fmu.state, n);
+    RITZ_CHECK_NEW(fmu.input, 2);
+    RITZ_CHECK_NEW(fmu.output, 2);
+    RITZ_CHECK(ritz_dense_new(n, n, &fmu.block[0]));
+    RITZ_CHECK(ritz_dense_new(n, 2, &fmu.B));
+    RITZ_CHECK(ritz_dense_new(2, n, &fmu.C));
+    RITZ_CHECK(ritz_dense_new(2, 2, &fmu.D));
+    for (int64_t i = 0; i < n * n; i++)
+        fmu.block[0].val[i] = 1.0;
+    for (int64_t i = 0; i < 2 * n; i++)
+        fmu.B.val[i] = fmu.C.val[i] = 1.0;
+    for (int i = 0; i < 4; i++)
+        fmu.D.val[i] = i == 1 ? 0.0 : 1.0;
+    for (int k = 0; k < 2; k++)
+        fmu.input[k].says = fmu.output[k].says = "";
+    RITZ_MOVE(*out, fmu);
+    return RITZ_OK;
+}
+
+/* Lists of 100 are there. Longer ones are not, but of y2, on which u1 does not
+ * act directly: an importer would suspect an algebraic loop. */
+static void long_lists_of_dependencies_are_left_out(void **state)
+{
+    static const struct {
+        int64_t order;
+        int listed;
+    } cases[] = {{98, 2 * 100}, {101, 2 * 1}};
+
+    (void)state;
+    for (int k = 0; k < 4; k++) {
+        const ritz_fmu_text text = {
+            .fmi = k < 2 ? 2 : 3, .name = "", .description = "", .token = ""};
+        RITZ_OWN(ritz_fmu) fmu = {0};
+        RITZ_OWN_ARRAY char *page = NULL;
+        int64_t length = 0;
+
+        assert_ok(make_dense_fmu(cases[k % 2].order, &fmu));
+        assert_ok(ritz_fmu_describe(&fmu, &text, &page, &length));
+        assert_int_equal(count_words(page, "dependenciesKind"),
+                         cases[k % 2].listed);
+        assert_int_equal(count_words(page, " dependencies=\""),
+                         cases[k % 2].listed);
+    }
+}
+
 static void names_are_distinct_and_escaped(void **state)
 {
     RITZ_OWN(ritz_reduced) reduced = {0};
@@ -557,6 +612,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(the_archive_holds_what_the_standard_wants),
     cmocka_unit_test(the_same_model_gives_the_same_bytes),
     cmocka_unit_test(dependencies_are_the_entries_that_are_not_zero),
+    cmocka_unit_test(long_lists_of_dependencies_are_left_out),
     cmocka_unit_test(names_are_distinct_and_escaped),
     cmocka_unit_test(units_are_stated_where_they_are_known),
     cmocka_unit_test(moments_and_tonnes_have_units),
