@@ -1,10 +1,10 @@
 /*
- * A Functional Mock-up Unit of FMI 2.0 [FmiTwo2024] or 3.0
- * [FmiThree2024], for model exchange and co-simulation. Its program is
- * that of fmu/, the same in all of them, and is copied from where Ritz is
- * installed; its numbers are resources/ritz.bin. The token is the SHA-256 of
- * numbers, description and certificate, so that the same model is the same
- * bytes.
+ * Writes Functional Mock-up Units of FMI 2.0 [FmiTwo2024] or 3.0
+ * [FmiThree2024], for model exchange and co-simulation. All contain the same
+ * program, built from fmu/ and copied from the folder where Ritz is installed.
+ * It reads the numbers of the model from resources/ritz.bin. The token by which
+ * importers tell models apart is the SHA-256 of numbers, description and
+ * documentation page, so that the same model always gives the same bytes.
  */
 #include "base/alloc.h"
 #include "base/text.h"
@@ -17,7 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What the archive is made of, and the texts that become its files. */
+/* The model, and the contents of the files in the archive. */
 typedef struct fmu_texts {
     ritz_fmu fmu;
     char name[RITZ_NAME_SIZE];
@@ -65,7 +65,7 @@ static ritz_status read_installed(const char *folder, const char *name,
     return RITZ_OK;
 }
 
-/* By the head of an ELF file: its class, its order of bytes, its machine. */
+/* Check the first bytes of an ELF file: 64 bits, little-endian, x86_64. */
 static bool is_for_x86_64(const unsigned char *bytes, int64_t size)
 {
     static const unsigned char head[] = {0x7f, 'E', 'L', 'F', 2, 1};
@@ -92,7 +92,7 @@ static ritz_status read_program(const ritz_export_request *request,
 
 /* ---- texts -------------------------------------------------------------- */
 
-/* The last name of the path without ".fmu". */
+/* The name of the model is that of the file without ".fmu". */
 static void name_model(const char *path, char out[RITZ_NAME_SIZE])
 {
     static const char ending[] = ".fmu";
@@ -106,7 +106,7 @@ static void name_model(const char *path, char out[RITZ_NAME_SIZE])
         out[length - (sizeof ending - 1)] = '\0';
 }
 
-/* documentation/index.html */
+/* Make documentation/index.html, which shows the certificate. */
 static ritz_status make_page(const char *name, char *certificate, char **out,
                              int64_t *length)
 {
@@ -149,7 +149,8 @@ static ritz_status make_page(const char *name, char *certificate, char **out,
     return RITZ_OK;
 }
 
-/* SHA-256 of numbers, page and description, made with zeros for the token. */
+/* SHA-256 of numbers, page and description, in which the token is still zeros.
+ */
 static ritz_status find_token(const fmu_texts *p, char out[RITZ_DIGEST_SIZE])
 {
     RITZ_OWN_ARRAY char *all = NULL;
@@ -165,7 +166,7 @@ static ritz_status find_token(const fmu_texts *p, char out[RITZ_DIGEST_SIZE])
     return RITZ_OK;
 }
 
-/* Numbers and description, with the token that is in `p`. */
+/* Make numbers and description anew, with the present token. */
 static ritz_status make_texts(const ritz_export_request *request, fmu_texts *p)
 {
     const ritz_fmu_text text = {

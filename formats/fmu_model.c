@@ -1,7 +1,9 @@
 /*
- * The numbers of an FMU. A model of second order goes by its modes, as
- * ritz-simulate's modal integrator does, a state space by its states; what
- * damping or A couples becomes one dense block, and a mode alone an oscillator.
+ * Makes the matrices of an FMU. The states of a model of second order are its
+ * modal coordinates and their rates, as in the modal integrator of
+ * ritz-simulate; a state space keeps its states. States that the damping matrix
+ * or A couples form a dense block. A mode that is coupled to no other is an
+ * oscillator.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -44,7 +46,8 @@ double ritz_fmu_entry(const ritz_fmu *fmu, int64_t block, int64_t row,
 
 /* ---- blocks ------------------------------------------------------------- */
 
-/* A motion in first-order form: of modes rows k are q_k, rows n + k are v_k. */
+/* Entry of A in x' = A x: that of a state space, or of modes with
+   x = [q_1 ... q_n, v_1 ... v_n]. */
 static double first_order_entry(const ritz_motion *m, int64_t i, int64_t j)
 {
     const int64_t n = m->n;
@@ -58,9 +61,10 @@ static double first_order_entry(const ritz_motion *m, int64_t i, int64_t j)
     return -ritz_dense_col(&m->D, j - n)[i - n];
 }
 
-/* The rows of each group become the states of its block, in turn. */
-static ritz_status list_rows(const ritz_motion *m, const ritz_groups *groups,
-                             int64_t *row)
+/* List the rows of A in the order of blocks: those of the first group, and so
+   on. */
+static void list_rows(const ritz_motion *m, const ritz_groups *groups,
+                      int64_t *row)
 {
     const bool modes = m->form != RITZ_FORM_STATES;
     int64_t at = 0;
@@ -74,7 +78,6 @@ static ritz_status list_rows(const ritz_motion *m, const ritz_groups *groups,
         for (int64_t k = from; modes && k < to; k++)
             row[at++] = m->n + groups->member[k];
     }
-    return RITZ_OK;
 }
 
 static ritz_status fill_block(const ritz_motion *m, const int64_t *row,
@@ -95,7 +98,7 @@ static bool drives(const ritz_dense *B, int64_t row)
     return false;
 }
 
-/* A block of two states that is q' = v, v' = -lambda q - d v + b u. */
+/* Store a block as lambda and d if it is q' = v, v' = -lambda q - d v + b'u. */
 static ritz_status note_oscillator(const ritz_dense *B, int64_t first,
                                    ritz_dense *block)
 {
@@ -159,7 +162,7 @@ static ritz_status fill_blocks(const ritz_motion *m, ritz_fmu *fmu)
         couples, states ? 0.0 : RITZ_SUM_ROUNDING * ritz_dense_max(couples),
         &groups));
     RITZ_CHECK_NEW(row, fmu->num_states);
-    RITZ_CHECK(list_rows(m, &groups, row));
+    list_rows(m, &groups, row);
     RITZ_CHECK(fill_ports(m, row, fmu));
     RITZ_CHECK_NEW(fmu->block, groups.count);
     fmu->num_blocks = groups.count;
@@ -177,11 +180,12 @@ static ritz_status fill_blocks(const ritz_motion *m, ritz_fmu *fmu)
 /* ---- nominal values ----------------------------------------------------- */
 
 /*
- * A solver's absolute tolerance is relative to nominal values. That of a state
- * is a part of its largest |(s I - A)^-1 b| over the inputs and over real s from
- * the lowest frequency of the model to its highest, which is about its largest
- * response to a unit step at the time 1/s. States that hardly respond have the
- * part RITZ_HALF_DIGITS of the largest, lest a solver resolve their rounding.
+ * Solvers multiply their absolute tolerance by nominal values. That of a state
+ * is a fixed part of its largest |(s I - A)^-1 b|, over all inputs and over
+ * real s from the lowest frequency of the model to the highest: that is about
+ * its largest response to a unit step at the time 1/s. A state that hardly
+ * responds has RITZ_HALF_DIGITS of the largest nominal value, so that a solver
+ * does not resolve its rounding errors.
  */
 
 static double frequency_of(const ritz_motion *m, const double _Complex *pole,
@@ -219,8 +223,8 @@ static ritz_status find_range(const ritz_export_object *object,
     return RITZ_OK;
 }
 
-/* Raise nominal values to |(s I - A)^-1 B| at one s, which is passed over if it
- * is an eigenvalue. */
+/* Raise the nominal values of a block to |(s I - A)^-1 B| at one s. An s that
+ * is an eigenvalue is skipped. */
 static ritz_status note_response(const ritz_fmu *fmu, int64_t block,
                                  int64_t first, double s, double *nominal)
 {
@@ -248,8 +252,8 @@ static ritz_status note_response(const ritz_fmu *fmu, int64_t block,
     return RITZ_OK;
 }
 
-/* Nominal values are at least a part of the largest, and powers of two, so that
- * rounding does not change them; none is 0, which the standard forbids. */
+/* Raise small nominal values to a part of the largest, and round all to powers
+ * of two, which do not depend on rounding errors. None is 0, as FMI demands. */
 static void settle_nominals(int64_t count, double *nominal)
 {
     double largest = 0.0;
@@ -289,7 +293,7 @@ static ritz_status find_nominals(const ritz_export_object *object,
     return RITZ_OK;
 }
 
-/* ---- all of it ---------------------------------------------------------- */
+/* ---- the model ---------------------------------------------------------- */
 
 static ritz_status check_finite(const ritz_dense *A, const char *name)
 {
@@ -366,7 +370,7 @@ static void put_dense(FILE *file, const ritz_dense *A)
 static void put_model(FILE *file, const ritz_fmu *fmu,
                       const char token[RITZ_DIGEST_SIZE])
 {
-    static const char head[16] = "RITZFMU1"; /* the checksum comes later */
+    static const char head[16] = "RITZFMU1"; /* room for the hash, set later */
 
     fwrite(head, 1, sizeof head, file);
     fwrite(token, 1, RITZ_DIGEST_SIZE - 1, file);
