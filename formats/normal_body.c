@@ -16,7 +16,8 @@ void ritz_normal_body_free(ritz_normal_body *body)
     *body = (ritz_normal_body){0};
 }
 
-/* With eigenvectors S of (K, M), S'M S = I:  Psi := Psi S, D := S'D S. */
+/* With the eigenvectors S of (K, M), S'M S = I, modes become Psi S and damping
+   S'D S. */
 static ritz_status turn_modes(const ritz_pairs *pairs, ritz_normal_body *b)
 {
     const ritz_floating *f = &b->floating;
@@ -35,23 +36,6 @@ static ritz_status turn_modes(const ritz_pairs *pairs, ritz_normal_body *b)
     return ritz_invariants_project(&f->invariants, S, &b->invariants);
 }
 
-/* The floating body with the reference that is usual for its frame. */
-static ritz_status float_as_usual(const ritz_reduced *reduced,
-                                  const ritz_floating_request *request,
-                                  ritz_floating *out)
-{
-    RITZ_OWN(ritz_floating) bare = {0};
-    ritz_floating_request usual = {request->frame, NULL};
-
-    RITZ_CHECK(ritz_floating_of(reduced, request, &bare));
-    if (bare.num_rigid == 0) {
-        RITZ_MOVE(*out, bare);
-        return RITZ_OK;
-    }
-    usual.reference = bare.grid >= 0 ? "tangent" : "mean-axis";
-    return ritz_floating_of(reduced, &usual, out);
-}
-
 ritz_status ritz_normal_body_of(const ritz_reduced *reduced,
                                 const ritz_floating_request *request,
                                 ritz_normal_body *out)
@@ -62,7 +46,7 @@ ritz_status ritz_normal_body_of(const ritz_reduced *reduced,
     if (request->reference)
         RITZ_CHECK(ritz_floating_of(reduced, request, &b.floating));
     else
-        RITZ_CHECK(float_as_usual(reduced, request, &b.floating));
+        RITZ_CHECK(ritz_floating_usual(reduced, request->frame, &b.floating));
     RITZ_CHECK(ritz_eigen_dense(&b.floating.K, &b.floating.M, &pairs));
     RITZ_CHECK(turn_modes(&pairs, &b));
     RITZ_MOVE(*out, b);

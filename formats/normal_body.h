@@ -1,7 +1,7 @@
 /*
- * A flexible body in a moving frame, in its own modes: those of the body when
- * the frame is held, scaled to unit mass, whatever the columns of the basis
- * are. Some simulators take M = I for granted, and others are faster so.
+ * A flexible body in a moving frame, described by its eigenvectors with the
+ * frame held, scaled to unit modal mass, instead of the columns of the basis.
+ * Some simulators assume M = I, and others are faster with it.
  */
 #ifndef RITZ_FORMATS_NORMAL_BODY_H
 #define RITZ_FORMATS_NORMAL_BODY_H
@@ -13,24 +13,27 @@
 typedef struct ritz_normal_body {
     ritz_floating floating;     /* as requested: nodes, frame, inertia */
     int64_t num_modes;          /* m, in ascending order of K */
-    double *hertz;              /* m; negative where K is indefinite */
-    double *K;                  /* m, w^2; M = I */
+    double *hertz;              /* m; negative where w^2 < 0 */
+    double *K;                  /* m, the diagonal w^2; M = I */
     ritz_dense D;               /* m x m; {0}: none */
     ritz_dense shape, turn;     /* 3 nodes x m; turn {0}: no node rotates */
     ritz_invariants invariants; /* about the origin of the frame */
 } ritz_normal_body;
 
 /**
- * @param[in] request  frame and reference. Without a reference, it is the
- *                     tangent of a frame at a grid and mean axes otherwise; of
- *                     a body that cannot move as a rigid one it is none
+ * Describe a reduced component by its eigenvectors relative to a frame.
+ *
+ * @param[in] request  frame and reference. If it names no reference, modes are
+ *                     tangent to a frame at a grid, and otherwise referred to
+ *                     mean axes. If the body has no rigid motion, the reference
+ *                     is "none"
  * @return as ritz_floating_of and ritz_eigen_dense
  */
 ritz_status ritz_normal_body_of(const ritz_reduced *reduced,
                                 const ritz_floating_request *request,
                                 ritz_normal_body *out);
 
-/** Frame, modes, their scale, and damping. */
+/** Report the frame, the modes and their scale, and damping. */
 ritz_status ritz_normal_body_say(const ritz_reduced *reduced,
                                  const ritz_normal_body *body,
                                  ritz_export_report *report);

@@ -472,19 +472,23 @@ static ritz_status move_invariants(ritz_floating *f)
 
 /* Leave rigid-body motion to the moving frame: columns of kind rigid if those
  * make up all of it, eigenvectors of (K_r, M_r) otherwise. */
-static ritz_status find_modes(const floating_source *s, ritz_floating *f)
+static ritz_status find_modes(const floating_source *s, bool usual,
+                              ritz_floating *f)
 {
     RITZ_CHECK(keep_columns(s, f));
     if (!f->V.val)
         RITZ_CHECK(diagonalise_body(s, f));
+    if (usual && f->num_rigid > 0)
+        f->reference =
+            f->grid >= 0 ? RITZ_REFERENCE_TANGENT : RITZ_REFERENCE_MEAN_AXIS;
     RITZ_CHECK(ritz_floating_refer(s, f));
     RITZ_CHECK(project_matrices(s, f));
     return shape_modes(s, f);
 }
 
-ritz_status ritz_floating_of(const ritz_reduced *reduced,
-                             const ritz_floating_request *request,
-                             ritz_floating *out)
+static ritz_status float_body(const ritz_reduced *reduced,
+                              const ritz_floating_request *request, bool usual,
+                              ritz_floating *out)
 {
     RITZ_OWN(floating_source) source = {0};
     RITZ_OWN(ritz_floating) f = {0};
@@ -493,7 +497,7 @@ ritz_status ritz_floating_of(const ritz_reduced *reduced,
     RITZ_CHECK(find_source(reduced, &source));
     RITZ_CHECK(read_reference(request->reference, &f.reference));
     RITZ_CHECK(read_frame(reduced, request->frame, &f));
-    RITZ_CHECK(find_modes(&source, &f));
+    RITZ_CHECK(find_modes(&source, usual, &f));
     f.inertia = reduced->inertia;
     f.structural = reduced->K4.val != NULL;
     RITZ_CHECK(
@@ -504,6 +508,21 @@ ritz_status ritz_floating_of(const ritz_reduced *reduced,
     f.approximate_mode = loss.mode;
     RITZ_MOVE(*out, f);
     return RITZ_OK;
+}
+
+ritz_status ritz_floating_of(const ritz_reduced *reduced,
+                             const ritz_floating_request *request,
+                             ritz_floating *out)
+{
+    return float_body(reduced, request, false, out);
+}
+
+ritz_status ritz_floating_usual(const ritz_reduced *reduced, const char *frame,
+                                ritz_floating *out)
+{
+    const ritz_floating_request request = {.frame = frame};
+
+    return float_body(reduced, &request, true, out);
 }
 
 void ritz_floating_free(ritz_floating *f)

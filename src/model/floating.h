@@ -72,6 +72,11 @@ ritz_status ritz_floating_of(const ritz_reduced *reduced,
                              const ritz_floating_request *request,
                              ritz_floating *out);
 
+/** As ritz_floating_of(), with the reference that is usual for the frame:
+ * tangent at a grid, mean axes elsewhere, none if no motion is rigid. */
+ritz_status ritz_floating_usual(const ritz_reduced *reduced, const char *frame,
+                                ritz_floating *out);
+
 /** Name of a reference condition: "mean-axis". */
 const char *ritz_frame_condition_name(ritz_frame_condition reference);
 
