@@ -1,4 +1,5 @@
-/* Coordinates over time, one time after the other. */
+/* Reads histories, the coordinates of a reduced component over time, one time
+ * after the other. */
 #include "base/alloc.h"
 
 #include <ritz/recover.h>
@@ -10,7 +11,7 @@
 
 enum { HEAD = 1 << 16, RATES = 3 };
 
-/* Room for what the history gives. */
+/* Allocate coordinates and inputs of one time. */
 static ritz_status make_room(const ritz_history_request *request,
                              ritz_history *out)
 {
@@ -25,7 +26,7 @@ static ritz_status make_room(const ritz_history_request *request,
     return RITZ_OK;
 }
 
-/* The format of a file, which is then at its beginning again. */
+/* Find the format of a file by its first bytes, and rewind the file. */
 static ritz_status find_format(FILE *file, const ritz_history_format **out)
 {
     RITZ_OWN_ARRAY char *head = NULL;
@@ -114,7 +115,7 @@ static void take_simulated(ritz_history *history, bool *more)
         history->f[j] = s->u[k * s->num_inputs + j];
 }
 
-/* q = V x, and the same of rates. */
+/* q = V x, q' = V x', q'' = V x''. */
 static void turn_coordinates(ritz_history *history)
 {
     const ritz_dense *V = history->V;

@@ -35,7 +35,7 @@ ritz_status history_lines_next(history_lines *lines, bool *more)
     }
 }
 
-/* The end of a field with quotes around it, which become blanks. */
+/* Replace the quotes around a field by blanks. @return the end of the field */
 static char *close_quotes(char *field)
 {
     char *end = strchr(field + 1, '"');

@@ -1,4 +1,4 @@
-/* Lines of a text that is read while it is worked on. */
+/* Reads a text line by line, so that it need not fit into memory. */
 #ifndef RITZ_FORMATS_HISTORY_LINES_H
 #define RITZ_FORMATS_HISTORY_LINES_H
 
@@ -8,27 +8,29 @@
 
 typedef struct history_lines {
     FILE *file; /* owned */
-    char *text; /* the last line, without its end */
+    char *text; /* the last line */
     size_t room;
     int64_t number; /* of that line, from 1 */
 } history_lines;
 
 /**
- * Read the next line that is neither blank nor a comment of '#'.
+ * Read the next line that is neither blank nor begins with '#'.
  *
  * @param[out] more  false at the end of the file
- * @return RITZ_ERR_FORMAT if it holds a NUL; RITZ_ERR_FILE; RITZ_ERR_MEMORY
+ * @return RITZ_ERR_FORMAT if the line contains a NUL; RITZ_ERR_FILE;
+ *         RITZ_ERR_MEMORY
  */
 ritz_status history_lines_next(history_lines *lines, bool *more);
 
-/** What divides the fields of a line: ',' if it has one, else ' '. */
+/** The separator of a line's fields: ',' if the line contains one, else ' '. */
 char history_lines_mark(const char *line);
 
-/** Cut off the next field, without blanks and quotes around it. NULL: there is
- * none. */
+/** Take the next field of *rest, without the blanks and quotes around it.
+ * @return NULL if there is none */
 char *history_lines_field(char **rest, char mark);
 
-/** Read a finite number. @return RITZ_ERR_FORMAT with the line */
+/** Read a finite number. @return RITZ_ERR_FORMAT, with the line's number in the
+ * sentence */
 ritz_status history_lines_real(const history_lines *lines, const char *field,
                                double *out);
 

@@ -1,11 +1,11 @@
 /*
- * The modal output of MBDyn, a file .mod: a line for each mode of each body at
- * each time that is written,
+ * Reads the modal output of MBDyn, a file .mod, which has a line for each time,
+ * body and mode,
  *
  *     BODY.MODE  q  q'  q''
  *
- * with the label of the modal joint and the number of the mode [MBDyn2017].
- * There are no times.
+ * with the label of the modal joint and the number of the mode [MBDyn2017]. The
+ * file does not state the times.
  */
 #include "formats/history_lines.h"
 
@@ -26,7 +26,7 @@ typedef struct mod_file {
     double step;
     int64_t label; /* of the body; 0: that of the first line */
     int64_t times; /* read so far */
-    int64_t *mode; /* order: their numbers, as the first time has them */
+    int64_t *mode; /* order: numbers of the modes, as at the first time */
 } mod_file;
 
 static void end(void *own)
@@ -38,7 +38,7 @@ static void end(void *own)
     free(mod);
 }
 
-/* "12.3" of digits alone. */
+/* Read BODY.MODE, as in "12.3". */
 static bool read_label(const char *field, int64_t *label, int64_t *mode)
 {
     const char *point = strchr(field, '.');
@@ -109,7 +109,7 @@ static ritz_status begin(FILE *file, const ritz_history_request *request,
     return RITZ_OK;
 }
 
-/* One line; *taken if it is of the body. */
+/* Read a line of mode `at`. *taken is false if it is of another body. */
 static ritz_status take_line(mod_file *mod, int64_t at, ritz_history *history,
                              bool *taken)
 {

@@ -1,8 +1,9 @@
 /*
- * Tables of text, a line for each time: sensors and solutions of Exudyn, with
- * comments of '#' in front and times in the first column [Gerstmayr2023]; what
- * write_csv of FMPy makes, with a line of names, one of them "time"; and any
- * other with commas or blanks between its columns.
+ * Reads tables of text with a line for each time. Files of sensors and
+ * solutions of Exudyn begin with comments of '#' and have times in the first
+ * column [Gerstmayr2023]. Files that write_csv of FMPy makes begin with a line
+ * of names, one of which is "time". Any other table with commas or blanks
+ * between its columns can be read too.
  */
 #include "formats/history_lines.h"
 
@@ -24,15 +25,14 @@ static const char letters[RATES + 1] = "qva";
 
 typedef struct table {
     history_lines lines;
-    char mark;    /* between columns */
-    bool waiting; /* the first line of numbers is read */
-    int64_t count, room;
-    char (
-        *name)[RITZ_NAME_SIZE]; /* of each column; "" without a line of them */
-    double *value;              /* count */
-    int64_t time;
-    int64_t *column[RATES]; /* order each; NULL: not there */
-    int64_t *input;
+    char mark;    /* separator of columns */
+    bool waiting; /* the first line has numbers, which are still to be used */
+    int64_t count, room;          /* columns */
+    char (*name)[RITZ_NAME_SIZE]; /* of each; "" if the file has no names */
+    double *value;                /* count, of the present line */
+    int64_t time;                 /* the column of times */
+    int64_t *column[RATES]; /* order each, columns of q, q', q''; NULL: none */
+    int64_t *input;         /* columns of the inputs; NULL: none */
 } table;
 
 static void end(void *own)
@@ -45,7 +45,7 @@ static void end(void *own)
     free(t);
 }
 
-/* Any text whose first line, comments left out, has two fields. */
+/* A table is a text whose first line that is no comment has a separator. */
 static bool recognise(const char *bytes, int64_t size)
 {
     const char *end_of = bytes + size;
@@ -68,7 +68,7 @@ static bool recognise(const char *bytes, int64_t size)
 
 /* ---- columns ------------------------------------------------------------ */
 
-/* The first line: names, or already numbers. */
+/* Read the first line, which has the names of columns or the first numbers. */
 static ritz_status read_names(table *t)
 {
     RITZ_OWN_ARRAY char *copy = NULL;
@@ -97,16 +97,16 @@ static ritz_status read_names(table *t)
     return RITZ_OK;
 }
 
-static ritz_status put_column(int64_t column, int64_t due, int64_t *count,
-                              int64_t *out)
+/* Store a column, and count it even if more than `due` are named. */
+static void put_column(int64_t column, int64_t due, int64_t *count,
+                       int64_t *out)
 {
     if (*count < due)
         out[*count] = column;
     (*count)++;
-    return RITZ_OK;
 }
 
-/* Columns of one item: "7", "2-9", "NAME" or "PREFIX*". */
+/* Append the columns that "7", "2-9", "NAME" or "PREFIX*" stands for. */
 static ritz_status take_item(const table *t, const char *item, int64_t due,
                              int64_t *count, int64_t *out)
 {
@@ -120,13 +120,13 @@ static ritz_status take_item(const table *t, const char *item, int64_t due,
                        "there is no column %" PRId64 ", there are %" PRId64, to,
                        t->count);
         for (; from <= to; from++)
-            RITZ_CHECK(put_column(from - 1, due, count, out));
+            put_column(from - 1, due, count, out);
         return RITZ_OK;
     }
     for (int64_t k = 0; k < t->count; k++)
         if (star ? strncmp(t->name[k], item, length - 1) == 0
                  : strcmp(t->name[k], item) == 0)
-            RITZ_CHECK(put_column(k, due, count, out));
+            put_column(k, due, count, out);
     RITZ_REFUSE_IF(*count == before, RITZ_ERR_ARGUMENT,
                    "there is no column '%s'", item);
     return RITZ_OK;
@@ -157,7 +157,7 @@ static ritz_status take_list(const table *t, const char *list, char option,
     return RITZ_OK;
 }
 
-/* Column of a name; -1: there is none. */
+/* Index of the column with a name; -1 if there is none. */
 static int64_t find_name(const table *t, const char *name)
 {
     for (int64_t k = 0; k < t->count; k++)
@@ -166,7 +166,8 @@ static int64_t find_name(const table *t, const char *name)
     return -1;
 }
 
-/* Columns "q[1]", "q[2]", ...; nothing if the first is not there. */
+/* Find the columns "q[1]", "q[2]", ...; *out stays NULL if there is no
+   "q[1]". */
 static ritz_status take_indexed(const table *t, char letter, int64_t due,
                                 int64_t **out)
 {
@@ -187,7 +188,8 @@ static ritz_status take_indexed(const table *t, char letter, int64_t due,
     return RITZ_OK;
 }
 
-/* A table without names: behind the times q, or q and q', or q, q' and q''. */
+/* The columns of a table without names are the times and then q, or q and q',
+   or q, q' and q''. */
 static ritz_status take_blocks(table *t, int64_t order)
 {
     const int64_t blocks = order > 0 ? (t->count - 1) / order : 0;

@@ -1,4 +1,5 @@
-/* A reduced component in motion, with values on its cells. */
+/* Moves the points of a reduced component, and puts quantities such as stresses
+ * on its cells. */
 #include "base/alloc.h"
 
 #include <ritz/export.h>
@@ -11,7 +12,7 @@
 
 enum { MOST_PARTS = 31 };
 
-/* Cells in the order of their elements' numbers. */
+/* A cell and the number of its element. */
 typedef struct numbered_cell {
     int64_t id, cell;
 } numbered_cell;
@@ -35,9 +36,10 @@ static int64_t count_rows(const ritz_reduced *reduced)
     return count;
 }
 
-/* Where cells of an element begin; where they would, without any. */
-static int64_t lower_end(const ritz_elements *cells, const int64_t *order,
-                         int64_t id)
+/* Index in `order` of the first cell whose element has at least the number
+   `id`. */
+static int64_t find_first_cell(const ritz_elements *cells, const int64_t *order,
+                               int64_t id)
 {
     int64_t low = 0, high = cells->count;
 
@@ -83,7 +85,8 @@ static ritz_status add_field(const char *name, const char *part,
     return RITZ_OK;
 }
 
-/* Different words of the rows, of which the first of each names them all. */
+/* Number of different parts ("sx") that the rows have; at most MOST_PARTS +
+   1. */
 static int64_t count_parts(const ritz_quantity *q)
 {
     int64_t count = 0;
@@ -98,7 +101,9 @@ static int64_t count_parts(const ritz_quantity *q)
     return count;
 }
 
-/* Fields of one quantity, whose rows begin at `first` among all. */
+/* Add the fields of quantity k: one for all of its rows and, if its rows have
+   different parts, one for each part. `first` is the index of its first row
+   among the rows of all quantities. */
 static ritz_status list_fields(const ritz_quantity *q, int64_t k, int64_t first,
                                int64_t *room, ritz_moving *m)
 {
@@ -134,8 +139,8 @@ static void find_cells(const ritz_quantity *q, int64_t first, ritz_moving *m)
         if (ritz_quantity_of_grids(q->kind))
             continue;
         if (cells->id && id > 0) {
-            m->first[first + i] = lower_end(cells, m->order, id);
-            m->last[first + i] = lower_end(cells, m->order, id + 1);
+            m->first[first + i] = find_first_cell(cells, m->order, id);
+            m->last[first + i] = find_first_cell(cells, m->order, id + 1);
         }
         m->num_lost += m->first[first + i] == m->last[first + i];
     }
@@ -211,6 +216,7 @@ void ritz_moving_to(ritz_moving *moving, const double *q)
         frame->of_cell[k] = nan("");
 }
 
+/* A cell keeps the value of the largest magnitude. */
 static void put_value(ritz_shapes *frame, int64_t field, int64_t cell,
                       double value)
 {

@@ -1,4 +1,4 @@
-/* Maxima over time as text. */
+/* Writes the maxima over time of recovered quantities as a table of text. */
 #include "base/alloc.h"
 #include "formats/certificate.h"
 #include "formats/sink.h"

@@ -1,4 +1,4 @@
-/* Shapes over time. */
+/* Writes a series, the shapes of a component over time, frame by frame. */
 #include "base/alloc.h"
 #include "formats/certificate.h"
 

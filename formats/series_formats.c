@@ -1,4 +1,4 @@
-/* Formats of shapes over time. */
+/* The table of formats of series. */
 #include <ritz/export.h>
 
 const ritz_series_format *const ritz_series_formats[] = {

@@ -1,7 +1,8 @@
 /*
- * A collection of VTK: NAME.pvd lists, with their times, the files of a folder
- * NAME.frames beside it, each of them an unstructured grid of its own
- * [Schroeder2006]. Frames get their names at once, the list at the end.
+ * Writes a series as a collection of VTK [Schroeder2006]: each frame is a file
+ * with an unstructured grid in the folder NAME.frames, and NAME.pvd, next to
+ * the folder, lists the times and files of all frames. Each frame gets its name
+ * when it is complete, the list when all frames are.
  */
 #include "base/alloc.h"
 #include "formats/certificate.h"
@@ -14,16 +15,16 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { NAME_ROOM = 32 }; /* of "/000000.vtu" */
+enum { NAME_ROOM = 32 }; /* bytes for "/000000.vtu" */
 
 typedef struct pvd {
     char *folder; /* "motion.frames" */
-    char *path;   /* of the frame at hand */
-    bool made;    /* the folder by this series */
+    char *path;   /* of the present frame */
+    bool made;    /* this series made the folder */
     bool finished;
 } pvd;
 
-/* "motion.frames" of "motion.pvd". */
+/* Name the folder "motion.frames" after "motion.pvd". */
 static ritz_status name_folder(const char *path, char **out)
 {
     static const char ending[] = ".pvd";
@@ -46,7 +47,7 @@ static ritz_status begin(const char *path, const ritz_shapes *mesh,
 {
     pvd *p = NULL;
 
-    (void)mesh; /* each frame has it */
+    (void)mesh; /* each frame contains the mesh */
     RITZ_CHECK_NEW(p, 1);
     series->own = p;
     RITZ_CHECK(name_folder(path, &p->folder));
@@ -76,7 +77,7 @@ static ritz_status frame(ritz_series *series, const ritz_shapes *shapes)
     return ritz_draft_publish_now(&draft);
 }
 
-/* Names are relative to the folder of the list. */
+/* Names of files are relative to the folder that contains the list. */
 static ritz_status print_list(FILE *file, const void *what)
 {
     const ritz_series *series = what;

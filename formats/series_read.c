@@ -1,6 +1,7 @@
 /*
- * Collections and frames of VTK as series_pvd.c and export_vtu.c write them,
- * for pictures: text arrays alone, one piece, and of values of cells the first.
+ * Reads collections and frames of VTK for pictures, but only as series_pvd.c
+ * and export_vtu.c write them: one piece whose arrays are text. Of the arrays
+ * with values of cells only the first is read.
  */
 #include "base/alloc.h"
 #include "base/text.h"
@@ -16,7 +17,8 @@
 
 /* ---- attributes and arrays ---------------------------------------------- */
 
-/* Behind NAME=" of the element at @p text, which '>' ends; NULL: not there. */
+/* The value of an attribute, which ends at the next quote. @p text is within
+ * the element, before the attribute. NULL if the element does not have it. */
 static const char *find_attribute(const char *text, const char *name)
 {
     const size_t length = strlen(name);
@@ -28,7 +30,8 @@ static const char *find_attribute(const char *text, const char *name)
     return NULL;
 }
 
-/* A count that so many bytes of text can hold. */
+/* Read an attribute that counts points or cells. A count above the number of
+ * bytes of the text is refused before anything is allocated for it. */
 static ritz_status read_count(const char *element, const char *name,
                               const char *text, int64_t *out)
 {
@@ -43,7 +46,8 @@ static ritz_status read_count(const char *element, const char *name,
     return RITZ_OK;
 }
 
-/* The numbers of an array; NULL: there is none of that name. */
+/* The text of the numbers of a DataArray; NULL if there is none of that
+   name. */
 static const char *find_array(const char *text, const char *name)
 {
     const size_t length = strlen(name);
@@ -122,7 +126,7 @@ static ritz_status read_cells(const char *text, ritz_shapes *out)
                        out->num_points - 1, cells->grid);
 }
 
-/* The first array of values of cells, if there is one. */
+/* Read the first array in <CellData>, if there is one. */
 static ritz_status read_field(const char *text, ritz_shapes *out)
 {
     const char *from = strstr(text, "<CellData>");

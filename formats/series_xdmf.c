@@ -1,7 +1,7 @@
 /*
- * XDMF over time [Clarke2007]: a small XML file with a grid for each time, all
- * of one mesh, and beside it an HDF5 file with the numbers, which is written
- * frame by frame.
+ * Writes a series as XDMF [Clarke2007]: an XML file with a grid for each time,
+ * all with the same mesh, and next to it an HDF5 file with the numbers, which
+ * is written frame by frame.
  */
 #include "base/alloc.h"
 #include "formats/certificate.h"
@@ -120,7 +120,7 @@ static ritz_status print_light(FILE *file, const void *what)
     return RITZ_OK;
 }
 
-/* The numbers keep the name that they began with. */
+/* The HDF5 file keeps the name that begin() gave it, whatever `path` is. */
 static ritz_status finish(ritz_series *series, const char *path)
 {
     xdmf *x = series->own;
