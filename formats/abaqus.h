@@ -31,7 +31,8 @@ ritz_status ritz_abaqus_in_line(ritz_status status, int64_t number);
  * @return false at the end of the text */
 bool ritz_abaqus_next(ritz_lines *text);
 
-/** Take the next line that is neither blank nor a comment. */
+/** Take the next line that is neither blank nor a comment.
+ * @return false at the end of the text */
 bool ritz_abaqus_next_stated(ritz_lines *text);
 
 /** Take the next line of data. @return false at the end of the text or before a

@@ -413,7 +413,7 @@ static ritz_status begin_element(ritz_cdb *all, int64_t type, int64_t line,
     return RITZ_OK;
 }
 
-/* Read the `due` nodes that the last element still lacks from the next lines. */
+/* Read the `due` nodes that the last element lacks from the next lines. */
 static ritz_status continue_element(ritz_cdb *all, const cdb_form *form,
                                     int64_t due)
 {

@@ -123,7 +123,7 @@ static void pick_nodes(const int64_t *node, ritz_cell kind, int64_t count,
         out->grid[k] = node[order[k] - 'A'];
 }
 
-/* Bricks with coinciding corners, in ANSYS's letters I J K L M N O P: a wedge has
+/* Bricks with coinciding corners, in the letters of ANSYS, I to P: a wedge has
    K = L and O = P, a tetrahedron also M = N = O. A pyramid is drawn as a brick.
  */
 static void cut_brick(const int64_t *n, cdb_cell *out)

@@ -1,5 +1,5 @@
 /*
- * The elements of ANSYS's library [Ansys2024]: the cells that draw them, and the
+ * The elements of the library of ANSYS [Ansys2024]: their cells, and the
  * directions of their nodes.
  */
 #include "formats/cdb.h"

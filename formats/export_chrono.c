@@ -7,8 +7,8 @@
  *     frames K
  *     GRID X Y Z            K lines: interface frames at rest, basic axes
  *     modes N
- * HERTZ N lines: frequency with all frames held; 0 of a mode * without
- stiffness * M 6 K + N lines of as many numbers; then K and D
+ *     HERTZ                 N lines: with all frames held; 0: no stiffness
+ *     M                     6 K + N lines of as many numbers; then K and D
  *
  * Coordinates are six small motions of each frame, translations before
  * rotations, and then modes. Numbers have 17 digits.

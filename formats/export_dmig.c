@@ -7,12 +7,12 @@
  *     DMIG*    NAME  GJ  CJ                        TIN 2 real, double
  *     *        G1    C1  A1                        one line for each term
  *
- * Of a symmetric matrix the lower triangle is written, as both would be fatal
- * to NASTRAN [MSC2012].
+ * Of a symmetric matrix only the lower triangle is written, since NASTRAN stops
+ * if it finds both [MSC2012].
  *
- * NASTRAN-95 wants each continuation marked, both triangles, and a D in each
- * number of double precision [Nastran1986]: a number without is fatal there,
- * and of one triangle the sum with its own matrices is unsymmetric.
+ * NASTRAN-95 [Nastran1986] is different. It needs a mark in each continuation,
+ * it stops at a number of double precision without a D, and it needs both
+ * triangles: with one, the sum of the matrix and its own is unsymmetric.
  *
  * Forces of rigid motion are small differences of large entries, so
  * that rounding holds a free body, by springs of either sign. What rounding
@@ -56,8 +56,9 @@ static const dmig_kind kinds[] = {
 /* A matrix before and after rounding. */
 typedef struct dmig_matrix {
     const dmig_kind *kind;
-    bool symmetric, lower; /* one triangle of it is written */
-    bool lettered;         /* numbers have a D */
+    bool symmetric;
+    bool lower;      /* only the lower triangle is written */
+    bool lettered;   /* numbers have a D */
     double averaged; /* relative asymmetry of a symmetric one, by rounding */
     ritz_dense exact, rounded;
     int64_t stored, changed; /* numbers written; those that differ */
@@ -93,8 +94,8 @@ static void print_number(const dmig_matrix *m, double x,
                  : ritz_large_field_print)(x, text);
 }
 
-/* Round A(i,j) to the digits of its field; count entries, and those that
- * change. */
+/* Round A(i,j) to the digits of its field. Count the entries, and those that
+ * rounding changes. */
 static ritz_status round_entry(dmig_matrix *m, int64_t i, int64_t j)
 {
     const double x = ritz_dense_col(&m->exact, j)[i];
@@ -179,7 +180,8 @@ typedef struct dmig_audit {
     double lowest;        /* eigenvalue over first flexible one, rounded */
     double rigid_hz, first_hz;
     double to_hz, change; /* of frequencies in the band */
-    char indefinite[160]; /* in words; empty: the mass is definite */
+    char indefinite[160]; /* why the rounded mass matrix is not positive
+                             definite; "" if it is */
 } dmig_audit;
 
 /* max|A r| / max|A| over rigid modes r whose largest entry is 1. */
@@ -235,9 +237,10 @@ static void compare_frequencies(const ritz_pairs *exact,
 }
 
 /*
- * Eigenpairs of the rounded matrices. Rounding gives a motion without mass a
- * small one, of either sign. It changes M_ij by at most c |M_ij| <= c sqrt(M_ii M_jj), hence
- * M + n c diag(M) is semidefinite, and changes frequencies by n c / 2.
+ * Find the eigenpairs of the rounded matrices. Rounding can make M indefinite,
+ * if a motion has no mass. It changes M_ij by at most c |M_ij|, which is at
+ * most c sqrt(M_ii M_jj). So M + n c diag(M) is positive semidefinite; its
+ * frequencies differ by at most n c / 2, relative.
  */
 static ritz_status find_rounded(const dmig_deck *deck, dmig_audit *audit,
                                 ritz_pairs *out)

@@ -26,12 +26,12 @@
  *     mPhitTPsi           m psi_l
  *     mPhitTPsiTilde      m skew(psi_l)
  *
- * [ZwolferGerstmayr2021]. What does not change with deformation is taken from
- * all of M: mass, inertia, and the momenta R'M Psi. The equations of motion
- * keep momentum only if the other terms agree with these: m skew(psi_l) must be
- * skew of the linear momentum S_l, and of (x . psi) I - psi x' the antisymmetric
- * part must belong to the angular momentum C_l; so they are set. Where the
- * invariants are exact, both are identities.
+ * [ZwolferGerstmayr2021]. The terms that do not change with deformation are
+ * computed from all of M: mass, inertia, and the momenta R'M Psi. The equations
+ * of motion conserve momentum only if the other terms agree with these. So
+ * m skew(psi_l) is set to the skew matrix of the linear momentum S_l, and the
+ * antisymmetric part of (x . psi) I - psi x' to that of the angular momentum
+ * C_l. If the invariants are exact, this changes nothing.
  */
 
 /* The permutation symbol e_abc. */
@@ -314,7 +314,7 @@ static ritz_status write_file(hid_t file, const void *what)
     return ritz_h5_set_text(file, "certificate", parts->certificate);
 }
 
-/* Leave whole lines that an attribute has room for. */
+/* Cut a text after the last line that fits into an attribute of HDF5. */
 static void cut_lines(char *text)
 {
     enum { ROOM = 32768 };

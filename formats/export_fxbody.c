@@ -5,21 +5,22 @@
  *
  *     u = sum_i X_i a_i + (1 - X_1 - X_2 - X_3) a_0 + P Phi alpha
  *
- * where a_i moves a point at distance one on axis i and a_0 the origin. P is
- * the rotation that the a_i make, which six constraints keep one. With X_0 = 1
- * - X_1 - X_2 - X_3 and integrals over the mass of the body
+ * where a_i is the displacement of the point at distance one on axis i and a_0
+ * that of the origin. P is the matrix with which the a_i turn the axes; six
+ * constraints make it a rotation. With X_0 = 1 - X_1 - X_2 - X_3, the mass
+ * matrices of these global modes and their couplings to the local modes are
  *
  *     M_R   (i j, i' j)  int X_i X_i'
  *     M_C^kl  (i k, alpha)  int X_i Phi_l
  *
- * The matrix Q = int X X' is that of the inertia J about the origin, Q = tr(J)
- * I / 2 - J, so that rotary inertia of nodes is in it, and turns with the body.
- * The three modes that turn nodes with the frame (Irot) carry none: a
+ * The integrals Q = int X X' follow from the inertia J about the origin, Q =
+ * tr(J) I / 2 - J, and so contain the rotary inertia of nodes. The three global
+ * modes that rotate nodes with the frame (Irot) therefore have no mass; a
  * constraint ties them to P.
  *
- * K_C^kl, the forces of deformation on a_0 ... a_3, is zero here. Since K R = 0
- * these forces do no work in any motion that the constraints admit: the
- * multipliers of the constraints balance them.
+ * K_C^kl, the forces of deformation on a_0 ... a_3, is written as zero: since
+ * K R = 0, these forces do no work in motions that the constraints admit, and
+ * the multipliers of the constraints balance them.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -34,9 +35,9 @@
 #include <stdlib.h>
 
 enum {
-    POINTS = 4, /* three axes and the origin */
-    GLOBAL = 3 * POINTS,
-    PER_LINE = 5, /* numbers, */
+    POINTS = 4,          /* one on each axis, and the origin */
+    GLOBAL = 3 * POINTS, /* global modes without those of Irot */
+    NUMBERS_PER_LINE = 5,
     NODES_PER_LINE = 10,
     NODE_MOST = 99999999, /* eight columns */
     COMMENT_WIDTH = 96
@@ -45,11 +46,11 @@ enum {
 typedef struct fxbody {
     const ritz_reduced *reduced;
     ritz_normal_body normal;
-    bool held;                /* no rigid motion: Iblo */
-    bool turns;               /* Irot */
+    bool held;                /* the body has no rigid motion (Iblo 1) */
+    bool turns;               /* some nodes have rotations (Irot 1) */
     double alpha, beta;       /* D = alpha M + beta K */
     double Q[POINTS][POINTS]; /* int X_i X_i', the origin last */
-    ritz_dense C;             /* 4 x 3m, (i, 3 k + l) int X_i Phi_l of mode k */
+    ritz_dense C; /* 4 x 3m; entry (i, 3 k + l) is int X_i Phi_l of mode k */
     char *certificate;
 } fxbody;
 
@@ -62,7 +63,7 @@ static void fxbody_free(fxbody *b)
 
 /* ---- inertia ------------------------------------------------------------ */
 
-/* Row and column of the origin: X_0 = 1 - X_1 - X_2 - X_3. */
+/* Products Q of X_1, X_2, X_3 and, in the last row and column, X_0. */
 static void find_products(const ritz_sid_terms *t, fxbody *b)
 {
     static const int of_J[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
@@ -85,7 +86,8 @@ static void find_products(const ritz_sid_terms *t, fxbody *b)
     b->Q[3][3] += all;
 }
 
-/* int u_l x_i = tr(N) / 2 - N_li of the tensor N = int (x.u) I - u x'. */
+/* With the tensor N = int (x.u) I - u x' of a mode u,
+   int u_l x_i = tr(N) / 2 delta_li - N_li. */
 static ritz_status find_couplings(const ritz_sid_terms *t, fxbody *b)
 {
     const int64_t m = b->normal.num_modes;
@@ -125,7 +127,7 @@ static ritz_status find_inertia(fxbody *b)
 
 /* ---- damping ------------------------------------------------------------ */
 
-/* alpha and beta of D_kk = alpha + beta w_k^2, by least squares. */
+/* Fit D_kk = alpha + beta w_k^2 by least squares. */
 static void fit_rayleigh(fxbody *b)
 {
     const ritz_normal_body *n = &b->normal;
@@ -146,7 +148,7 @@ static void fit_rayleigh(fxbody *b)
     b->alpha = mean_D - b->beta * mean_K;
 }
 
-/* Whether D is alpha M + beta K; if not, it is left out. */
+/* Whether D is alpha M + beta K. If not, alpha and beta are set to 0. */
 static bool is_rayleigh(fxbody *b)
 {
     const ritz_dense *D = &b->normal.D;
@@ -195,7 +197,7 @@ static ritz_status find_body(const ritz_reduced *reduced,
 
 /* ---- its file ----------------------------------------------------------- */
 
-/* Numbers of 16 columns, five of them in a line. */
+/* A list of numbers of 16 columns, five in each line. */
 typedef struct fx_row {
     FILE *file;
     int count;
@@ -207,7 +209,7 @@ static void put_number(fx_row *row, double x)
 
     ritz_large_field_print(x, text);
     fprintf(row->file, "%16s", text);
-    if (++row->count == PER_LINE) {
+    if (++row->count == NUMBERS_PER_LINE) {
         fputc('\n', row->file);
         row->count = 0;
     }
@@ -252,7 +254,7 @@ static void put_head(FILE *file, const fxbody *b)
                     (const double[]){b->alpha, b->beta});
 }
 
-/* Six components of a node: five in a line, then one. */
+/* Translations and rotations of a node. */
 static void put_motion(FILE *file, const double *u, const double *turn)
 {
     fx_row row = {file, 0};
@@ -262,7 +264,7 @@ static void put_motion(FILE *file, const double *u, const double *turn)
     end_row(&row);
 }
 
-/* X_i e_j; then unit rotations of the nodes that have any. */
+/* The global modes X_i e_j and, with Irot, unit rotations of nodes. */
 static void put_global_modes(FILE *file, const fxbody *b)
 {
     const ritz_floating *f = &b->normal.floating;
@@ -296,7 +298,7 @@ static void put_local_modes(FILE *file, const ritz_normal_body *n)
     }
 }
 
-/* M_R by rows of its upper triangle; rotations of nodes have no mass. */
+/* The upper triangle of M_R by rows. The modes of Irot have no mass. */
 static void put_global_mass(FILE *file, const fxbody *b)
 {
     const int count = GLOBAL + (b->turns ? 3 : 0);
@@ -310,7 +312,8 @@ static void put_global_mass(FILE *file, const fxbody *b)
     end_row(&row);
 }
 
-/* Nine matrices, one for each element kl of P by rows; zeros without `mass`. */
+/* M_C^kl, or zeros if `mass` is false, for the nine elements kl of P by
+   rows. */
 static void put_coupling(FILE *file, const char *title, const fxbody *b,
                          bool mass)
 {

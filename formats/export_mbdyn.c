@@ -1,23 +1,25 @@
 /*
- * A body for the modal joint of MBDyn: its text file .fem of 13 record groups
- * [MBDyn2017], as release 1.5.3 and later read it. Of groups
+ * Writes a body for the modal joint of MBDyn: a text file .fem of 13 record
+ * groups [MBDyn2017], as release 1.5.3 and later read it. Written are the
+ * groups
  *
  *      1  counts            2  labels of nodes     5, 6, 7  their x, y, z
- *      8  modes, six numbers a node: translations and rotations
+ *      8  modes: three translations and three rotations of each node
  *      9  modal mass       10  modal stiffness    13  modal damping
  *     11  masses of nodes
  *
- * MBDyn sums the masses of group 11 with positions and modes to invariants of
- * inertia. No masses at grids give those of a consistent mass matrix, so grids
- * have none here, and nodes without a grid carry masses that give each
- * invariant (formats/point_masses.c).
+ * MBDyn computes the invariants of inertia as sums over the masses of group 11,
+ * positions and modes. Masses at grids cannot give the invariants of a
+ * consistent mass matrix. So grids have no mass here, and additional nodes have
+ * the masses that give each invariant (formats/point_masses.c).
  *
- * Group 12, mass, centre and inertia, would say again what group 11 gives. If
- * a file has both, MBDyn 1.7.3 moves the nodes to its `origin node` and leaves
- * group 12 where it was; so there is none.
+ * Group 12, which has mass, centre and inertia, is not written, as they follow
+ * from group 11. In a file with both, MBDyn 1.7.3 moves the nodes relative to
+ * its `origin node`, but not the centre of group 12.
  *
- * A line that begins with "** RECORD GROUP " opens a group, all other lines
- * between groups are comments, and MBDyn ends at one of 8192 bytes.
+ * A line that begins with "** RECORD GROUP " begins a group. All other lines
+ * between groups are comments, of less than 8192 bytes: MBDyn stops at a longer
+ * one.
  */
 #include "base/alloc.h"
 #include "formats/certificate.h"
@@ -30,8 +32,8 @@
 
 enum { COMMENT_WIDTH = 100, NUMBERS_A_LINE = 6 };
 
-/* Labels of nodes without a grid begin so. MBDyn takes no blank in a label, and
- * labels of grids have no letter. */
+/* Labels of the additional nodes begin so, and differ from those of grids,
+ * which are numbers. MBDyn allows no blank in a label. */
 static const char point_label[] = "inertia";
 
 typedef struct fem_file {
@@ -47,14 +49,14 @@ static void fem_file_free(fem_file *fem)
     free(fem->certificate);
 }
 
-/* ---- its groups --------------------------------------------------------- */
+/* ---- groups ------------------------------------------------------------- */
 
 static void open_group(FILE *file, int number, const char *title)
 {
     fprintf(file, "**\n** RECORD GROUP %d, %s\n", number, title);
 }
 
-/* Each line has six numbers at most. */
+/* Put number k of `count`, six in each line. */
 static void put_number(FILE *file, int64_t k, int64_t count, double value)
 {
     bool ends = (k + 1) % NUMBERS_A_LINE == 0 || k + 1 == count;
@@ -123,7 +125,7 @@ static void print_modes(FILE *file, const fem_file *fem)
     }
 }
 
-/* Row by row, as MBDyn reads it. */
+/* MBDyn reads matrices by rows. */
 static void print_matrix(FILE *file, int group, const char *title,
                          const ritz_dense *A)
 {

@@ -24,7 +24,7 @@ enum { DIRECTIONS = RITZ_FRAME_MOTIONS };
 
 typedef struct superelement {
     const ritz_reduced *reduced;
-    bool weighs; /* release 5, which reads weights */
+    bool weighs; /* release 5: the file has weights */
     ritz_interface_form form;
     char *certificate;
 } superelement;

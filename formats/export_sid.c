@@ -1,21 +1,20 @@
 /*
- * Standard Input Data of a flexible body [Wallrapp1994], as SIMPACK, EMBSlib
- * and FEMBeam read it [Waurich2022]. The body moves with a frame; a node
- * R from its origin lies at R + phi q and has turned by psi q.
+ * Writes Standard Input Data of a flexible body [Wallrapp1994], as SIMPACK,
+ * EMBSlib and FEMBeam read it [Waurich2022]. In the frame of the body, a node
+ * with the position R is displaced to R + phi q and rotated by psi q.
  *
- * Readers disagree in three places, and the file is such that all of them find
- * the same body:
+ * These readers disagree in three points:
  *
- *     m1( i, k, j)   row, mode, column: as in files of SIMPACK and EMBSlib,
- *                    unlike FEMBeam's
- *     Ge             three columns for each mode, as all readers take it; some
- *                    files of EMBSlib have m columns for each axis
- *     Me             EMBSlib takes I whatever the file says: modes are scaled
- *                    so
+ *     m1( i, k, j)   row, mode, column, as in files of SIMPACK and EMBSlib;
+ *                    those of FEMBeam have another order
+ *     Ge             three columns for each mode, which all readers accept;
+ *                    some files of EMBSlib have m columns for each axis
+ *     Me             EMBSlib takes I whatever the file says, so modes are
+ *                    scaled to unit modal mass
  *
- * Diagonal and unit matrices have all their entries, since some readers do not
- * look at the structure. Numbers have one digit before the point and a D, the
- * only exponent that EMBSlib knows.
+ * Entries of diagonal and unit matrices are all written, since some readers
+ * ignore the code of the structure. Exponents have a D, the only letter that
+ * EMBSlib reads.
  */
 #include "base/alloc.h"
 #include "formats/certificate.h"
@@ -54,30 +53,31 @@ ritz_status sid_body_of(const ritz_reduced *reduced,
 /* ---- its file ----------------------------------------------------------- */
 
 enum {
-    /* bytes of the first line: EMBSlib takes it in two parts of 511, and looks
-       for key words in what is left */
+    /* bytes of the first line: EMBSlib reads two parts of 511 bytes and would
+       look for key words in the rest */
     TITLE_SIZE = 1000,
-    EMBSLIB_NODE = 99999 /* the largest number that it has room for */
+    EMBSLIB_NODE = 99999 /* largest number of a node that EMBSlib stores */
 };
 
-/* Codes of the structure of m0. */
+/* Codes for the structure of m0. */
 enum { STRUCTURE_ZERO = 0, STRUCTURE_DIAGONAL = 1, STRUCTURE_ANY = 3 };
 
 /* A matrix m0 + sum_k q_k m1_k. */
 typedef struct sid_matrix {
     const char *name;
     int64_t order, nrow, ncol, num_modes;
-    const double *m0; /* column j at m0 + j step; NULL: zero */
-    const double *m1; /* column j of mode k at m1 + (k ncol + j) step; NULL */
+    const double *m0; /* column j is at m0 + j step; NULL: zero */
+    const double *m1; /* column j of mode k is at m1 + (k ncol + j) step; NULL:
+                         zero */
     int64_t step;
-    const double *diagonal; /* of m0, in place of m0; NULL: m0 is given */
+    const double *diagonal; /* if not NULL, m0 is this diagonal matrix */
 } sid_matrix;
 
 typedef struct sid_text {
     FILE *file;
     const sid_body *body;
-    const char *title; /* behind the counts of the first line */
-    double *AP;        /* 3 x 3m, of the node that is written */
+    const char *title; /* text after the counts of the first line */
+    double *AP;        /* 3 x 3m, m1 of AP of the node that is written */
 } sid_text;
 
 static void put_number(FILE *file, double x)
@@ -152,7 +152,7 @@ static void put_matrix(FILE *file, int indent, const sid_matrix *A)
     fprintf(file, "%*send %s\n", indent, "", A->name);
 }
 
-/* AP = I + (psi q)~ */
+/* m1 of AP = I + skew(psi q): column a of mode k is psi_k x e_a. */
 static void turn_node(const sid_body *b, int64_t node, double *AP)
 {
     for (int64_t k = 0; k < b->normal.num_modes; k++) {
@@ -162,7 +162,6 @@ static void turn_node(const sid_body *b, int64_t node, double *AP)
             int64_t c = (a + 1) % 3;
             int64_t d = (a + 2) % 3;
 
-            /* v x e_a, along the other two axes */
             AP[9 * k + 3 * a + a] = 0.0;
             AP[9 * k + 3 * a + c] = v[d];
             AP[9 * k + 3 * a + d] = -v[c];
@@ -225,7 +224,7 @@ static sid_matrix from_taylor(const char *name, const ritz_taylor *t,
                         .step = t->m0.nrow};
 }
 
-/* Orders are those of the samples: Gr and Ge without their change with q. */
+/* As in the published samples, Gr and Ge have no term of first order in q. */
 static ritz_status put_terms(FILE *file, const sid_body *b)
 {
     const ritz_sid_terms *t = &b->terms;
@@ -279,7 +278,8 @@ static ritz_status print_file(FILE *file, const void *what)
 
 /* ---- its title ---------------------------------------------------------- */
 
-/* Lines of the certificate with bars between them, as many as fit whole. */
+/* Lines of the certificate with bars between them. A line that does not fit is
+   left out. */
 typedef struct title {
     char text[TITLE_SIZE];
     int64_t lines, kept;
@@ -290,7 +290,7 @@ static void add_line(title *t, const char *line, size_t length)
     const size_t used = strlen(t->text);
 
     t->lines++;
-    /* 64 bytes before it are for the counts */
+    /* counts take 64 bytes, a bar takes 3 */
     if (used + length + 64 + 3 > sizeof t->text)
         return;
     t->kept++;
@@ -298,7 +298,8 @@ static void add_line(title *t, const char *line, size_t length)
              used > 0 ? " | " : "", (int)length, line);
 }
 
-/* Estimates and the command are left out first. */
+/* Estimates and the command are added after all other lines, so that they are
+   the first to be left out. */
 static bool comes_last(const char *line)
 {
     static const char *const last[] = {"error, estimated: ", "command: "};
@@ -350,8 +351,7 @@ static ritz_status say_losses(const sid_body *b, const title *t,
             "the first line has room for %lld of %lld lines of the "
             "certificate",
             (long long)t->kept, (long long)t->lines));
-    /* ids ascend */
-    if (f->id[f->count - 1] > EMBSLIB_NODE)
+    if (f->id[f->count - 1] > EMBSLIB_NODE) /* the largest, as ids ascend */
         RITZ_CHECK(ritz_export_say(
             report,
             "warning: EMBSlib has room for node numbers of five "

@@ -1,8 +1,8 @@
 /*
- * A flexible solid of Simscape Multibody, block "Reduced Order Flexible Solid"
- * [SimscapeSolid2024], as a MAT file. Its coordinates are six small motions of
- * each interface frame, translations before rotations, along the axes of the
- * common reference frame, and then modes. The variables are
+ * Writes the data of the block "Reduced Order Flexible Solid" of Simscape
+ * Multibody [SimscapeSolid2024] as a MAT file. The coordinates are six small
+ * motions of each interface frame, translations before rotations, along the
+ * basic axes, and then modes. The variables are
  *
  *     P            k x 3, origins of the interface frames
  *     Q            k x 4, their unit quaternions: all axes are the basic ones
@@ -32,7 +32,7 @@ static void flexible_solid_free(flexible_solid *s)
     RITZ_FREE(s->origin, s->turn, s->name, s->certificate);
 }
 
-/* "PORT grid 5"; a port's name that is too long is cut. */
+/* Name a frame "PORT grid 5". A long name of a port is shortened. */
 static void name_frame(const ritz_interface_form *form, int64_t k,
                        char out[RITZ_NAME_SIZE])
 {

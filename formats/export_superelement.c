@@ -1,16 +1,18 @@
 /*
- * A reduced component as an external superelement of NASTRAN, in three files:
+ * Writes a reduced component as an external superelement of NASTRAN, in three
+ * files:
  *
  *     part.op4   KAA MAA BAA K4XX PA GPXX GDXX RVAX VA MUG1 ...
  *     part.asm   SEBULK, SECONCT, GRID, CORD2R, SPOINT: for the main bulk data
  *     part.pch   BEGIN SUPER, EXTRN, GRID, CORD2R, ASET, QSET1, SPOINT, DTI
  *
- * NASTRAN takes the matrices by their order, so each keeps its place: one that
- * the component does not have is a matrix of one zero. VA is a column of ones.
- * Rows are in the order of EXTRN, grids and points ascending [MSC2022].
+ * NASTRAN identifies the matrices by their order. So all are written; one that
+ * the component does not have is 1 x 1 and zero. VA is a column of ones. Rows
+ * are in the order of EXTRN, with numbers of grids and points ascending
+ * [MSC2022].
  *
- * The order of the matrices is that of files that two programs of NASTRAN wrote,
- * and of pyYeti's writer [Widrick2024].
+ * The order of the matrices is that in files of two versions of NASTRAN, and in
+ * those of pyYeti [Widrick2024].
  */
 #include "base/alloc.h"
 #include "base/text.h"
@@ -38,8 +40,8 @@ enum {
 /* A grid or scalar point of the interface. */
 typedef struct external_point {
     int64_t id;
-    int64_t digits; /* directions, 123456; 0 of a scalar point */
-    int64_t grid;   /* index among the grids; -1 of a scalar point */
+    int64_t digits; /* directions, as 123456; 0 for a scalar point */
+    int64_t grid;   /* index among the grids; -1 for a scalar point */
 } external_point;
 
 typedef struct external_element {
@@ -49,9 +51,11 @@ typedef struct external_element {
     ritz_nastran_rows rows;
     int64_t num_points;
     external_point *point; /* of the interface, ascending */
-    int64_t num_frames;    /* that grids of the interface have */
-    int64_t *frame;        /* of each frame of the component: its CORD2R, 0 */
-    double rounded;        /* of a position or axis, relative to the largest */
+    int64_t num_frames;    /* displacement frames of grids of the interface */
+    int64_t *frame;        /* for each frame of the component, the number of its
+                              CORD2R; 0 if no grid of the interface has it */
+    double rounded;        /* largest rounding error of positions and axes,
+                              relative to the size of the vector */
     ritz_nastran_displacements outputs;
     ritz_nastran_elements stresses, forces;
     char *path[3]; /* .op4, .asm, .pch */
@@ -97,7 +101,7 @@ static ritz_status list_points(external_element *e)
     return RITZ_OK;
 }
 
-/* How much 16 columns change a number, relative to `size`. */
+/* Note the rounding error of a number in 16 columns, relative to `size`. */
 static void round_number(external_element *e, double x, double size)
 {
     char text[RITZ_LARGE_FIELD_SIZE];
@@ -108,7 +112,7 @@ static void round_number(external_element *e, double x, double size)
         e->rounded = fmax(e->rounded, fabs(y - x) / size);
 }
 
-/* Number the frames that grids of the interface have. */
+/* Give numbers of CORD2R to the displacement frames of the interface. */
 static ritz_status number_frames(external_element *e)
 {
     const ritz_grids *grids = &e->reduced->grids;
@@ -139,10 +143,11 @@ static ritz_status number_frames(external_element *e)
 
 /* ---- matrices ------------------------------------------------------------ */
 
-/* Their order, and which of a reduced component they are. */
+/* The matrices of the file, in their order, and the names of those that are
+   matrices of the reduced component. */
 static const struct {
     const char *name, *of;
-    bool symmetric; /* NASTRAN takes no unsymmetric one */
+    bool symmetric; /* NASTRAN takes only a symmetric matrix */
 } members[] = {
     {"KAA", "K", true},     {"MAA", "M", true},      {"BAA", "D", false},
     {"K4XX", "K4", true},   {"PA", NULL, false},     {"GPXX", NULL, false},
@@ -164,8 +169,8 @@ static const ritz_matrix *find_matrix(const ritz_matrices *list,
     return NULL;
 }
 
-/* A matrix of the reduced component, all of whose entries are stored, with its
- * rows in the order of EXTRN. */
+/* Put rows and columns into the order of EXTRN.
+ * @param[in] from  a matrix with all its entries stored */
 static ritz_status order_matrix(const ritz_nastran_rows *rows,
                                 const ritz_matrix *from, bool symmetric,
                                 ritz_export_report *report, ritz_matrix *out)
@@ -263,7 +268,7 @@ static int64_t count_modes(const external_element *e)
     return e->rows.order - e->rows.num_interface;
 }
 
-/* The scalar points: those of the interface, and modal coordinates. */
+/* The scalar points of the interface, and those of modal coordinates. */
 static void put_points(FILE *file, const external_element *e)
 {
     for (int64_t k = 0; k < e->num_points; k++)
@@ -292,7 +297,7 @@ static void put_numbers(FILE *file, int count, const double *x)
     fputc('\n', file);
 }
 
-/* CORD2R has the origin, a point on axis 3 and a point on axis 1. */
+/* CORD2R is given by the origin, a point on axis 3 and a point on axis 1. */
 static void put_frame(FILE *file, int64_t id, const double *axes)
 {
     const double point[9] = {0.0,     0.0,     0.0,     axes[6], axes[7],
@@ -319,7 +324,7 @@ static void put_grid(FILE *file, const external_element *e, int64_t g)
             e->frame[grids->frame[g]]);
 }
 
-/* Both decks have the frames and grids of the interface. */
+/* The frames and grids of the interface, which both decks contain. */
 static void put_geometry(FILE *file, const external_element *e)
 {
     const ritz_grids *grids = &e->reduced->grids;
@@ -332,9 +337,9 @@ static void put_geometry(FILE *file, const external_element *e)
             put_grid(file, e, e->point[k].grid);
 }
 
-/* SEBULK SEID EXTOP4 - MANUAL - - UNIT; SECONCT SEID 0, then each number twice,
- * as both models have the same. NASTRAN takes ranges there as well, but some
- * readers do not. */
+/* The cards are SEBULK SEID EXTOP4 - MANUAL - - UNIT and SECONCT SEID 0 with
+ * pairs of numbers, one in each model. Both are the same here. NASTRAN also
+ * reads ranges there, but some other readers do not. */
 static ritz_status put_assembly(FILE *file, const void *what)
 {
     const external_element *e = what;
@@ -489,7 +494,7 @@ static ritz_status say_outputs(const external_element *e,
 
 /* ---- files --------------------------------------------------------------- */
 
-/* "part.op4" and, beside it, "part.asm" and "part.pch". */
+/* Name part.asm and part.pch after part.op4. */
 static ritz_status name_files(const char *output, external_element *e)
 {
     static const char *const suffix[] = {".op4", ".asm", ".pch"};

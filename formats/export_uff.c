@@ -232,7 +232,8 @@ static void print_lines(FILE *file, const uff_parts *parts)
         print_line(file, ++number, used, node);
 }
 
-/* The first line of a text that begins so; "" if there is none. */
+/* The rest of a text from the first line that begins with `begin`; "" if there
+   is none. */
 static const char *line_of(const char *text, const char *begin)
 {
     while (*text && strncmp(text, begin, strlen(begin)) != 0) {
@@ -242,8 +243,8 @@ static const char *line_of(const char *text, const char *begin)
     return text;
 }
 
-/* Five lines of text: the mode, and what of the certificate there is room for:
-   its origin, the first error, damping and the first input. */
+/* A data set has five lines of text: the name of the mode and four lines of the
+   certificate, its first, the first error, the damping and the first input. */
 static void print_texts(FILE *file, const uff_parts *parts, int64_t j)
 {
     const char *at = parts->certificate;

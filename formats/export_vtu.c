@@ -59,7 +59,7 @@ static void print_fields(FILE *file, const ritz_shapes *s)
     fputs("</PointData>\n", file);
 }
 
-/* Values of cells, "nan" where there is none. */
+/* A cell without a value has "nan". */
 static void print_cell_fields(FILE *file, const ritz_shapes *s)
 {
     const int64_t count = s->cells.count;

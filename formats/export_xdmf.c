@@ -60,7 +60,6 @@ static ritz_status write_field(hid_t file, const char *word, int64_t j,
                          ritz_dense_col(of, j));
 }
 
-/* Length of the list of cells. */
 static int64_t list_length(const ritz_shapes *s)
 {
     return list_cells(&s->cells, NULL);
@@ -148,7 +147,7 @@ static void print_field(FILE *file, const char *heavy, const ritz_shapes *s,
                                            s->num_points, 3});
 }
 
-/* The XML refers to the other file by its path. */
+/* The XML file, which refers to the HDF5 file by its name. */
 typedef struct xdmf_pair {
     const ritz_shapes *shapes;
     const char *beside; /* path of the numbers */
@@ -183,7 +182,7 @@ ritz_status ritz_xdmf_name_heavy(const char *output, char **out)
 {
     char *heavy = NULL;
 
-    /* readers look for the last ':' alone */
+    /* readers split "FILE:SET" at the last ':' */
     RITZ_REFUSE_IF(strchr(ritz_path_name(output), ':'), RITZ_ERR_ARGUMENT,
                    "'%s' holds ':', which parts file and data set in XDMF",
                    output);

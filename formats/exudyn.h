@@ -30,7 +30,7 @@ typedef struct exudyn_body {
     exudyn_terms terms;
 } exudyn_body;
 
-/** @return as ritz_floating_of */
+/** Make the contents of the file. @return as ritz_floating_of */
 ritz_status exudyn_body_of(const ritz_reduced *reduced,
                            const ritz_floating_request *request,
                            exudyn_body *out);

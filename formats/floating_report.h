@@ -1,4 +1,4 @@
-/* Lines of the report about a body in a floating frame, for any format. */
+/* Report lines about a body in a floating frame, shared by exporters. */
 #ifndef RITZ_FORMATS_FLOATING_REPORT_H
 #define RITZ_FORMATS_FLOATING_REPORT_H
 
@@ -6,16 +6,18 @@
 
 #include <ritz/export.h>
 
-/** Frame, mass, modes and their reference, and what is approximate. */
+/** Report the frame, the mass, the modes, their reference condition, and an
+ * approximation of invariants. */
 ritz_status ritz_floating_say(const ritz_floating *body,
                               ritz_export_report *report);
 
-/** Where damping is, and what of it is left out, for formats that hold D. */
+/** Report that stated damping is part of D, and that structural damping is left
+ * out; for formats that contain D. */
 ritz_status ritz_floating_say_damping(const ritz_reduced *reduced,
                                       const ritz_floating *body,
                                       ritz_export_report *report);
 
-/** The frame and the reference condition that an exporter is asked for. */
+/** The frame and the reference condition of an export request. */
 static inline ritz_floating_request
 ritz_floating_asked(const ritz_export_request *request)
 {

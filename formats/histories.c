@@ -1,4 +1,5 @@
-/* Formats of histories; the first that recognises a file reads it. */
+/* The table of formats of histories. The first that recognises a file reads it.
+ */
 #include <ritz/recover.h>
 
 const ritz_history_format *const ritz_history_formats[] = {

@@ -43,7 +43,7 @@ ritz_status ritz_mat_put_real(ritz_mat_sheet *s, const char *name, int64_t nrow,
                               int64_t ncol, const double *values)
 {
     size_t dims[2] = {(size_t)nrow, (size_t)ncol};
-    RITZ_OWN_ARRAY double *copy = NULL; /* which libmatio may write to */
+    RITZ_OWN_ARRAY double *copy = NULL; /* libmatio takes no const pointer */
 
     RITZ_CHECK_NEW(copy, nrow * ncol);
     memcpy(copy, values, (size_t)(nrow * ncol) * sizeof *copy);
@@ -52,7 +52,8 @@ ritz_status ritz_mat_put_real(ritz_mat_sheet *s, const char *name, int64_t nrow,
         Mat_VarCreate(name, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, dims, copy, 0));
 }
 
-/* The next letter of UTF-8 as one or two units of UTF-16. */
+/* Convert the next letter of UTF-8 to one or two units of UTF-16.
+   @return their number */
 static int take_letter(const char **text, uint16_t out[2])
 {
     const unsigned char *at = (const unsigned char *)*text;
@@ -73,7 +74,7 @@ static int take_letter(const char **text, uint16_t out[2])
     return 2;
 }
 
-/* Text as MATLAB holds it; NULL: no memory. */
+/* Make a variable of text, which MATLAB stores as UTF-16. NULL: no memory. */
 static matvar_t *text_variable(const char *name, const char *text)
 {
     RITZ_OWN_ARRAY uint16_t *unit = NULL;
@@ -87,7 +88,6 @@ static matvar_t *text_variable(const char *name, const char *text)
     return Mat_VarCreate(name, MAT_C_CHAR, MAT_T_UINT16, 2, dims, unit, 0);
 }
 
-/* Names as a column of cells. */
 ritz_status ritz_mat_put_names(ritz_mat_sheet *s, const char *name,
                                int64_t count,
                                const char (*names)[RITZ_NAME_SIZE])
@@ -116,7 +116,6 @@ ritz_status ritz_mat_put_text(ritz_mat_sheet *s, const char *name,
     return *text ? put_variable(s, name, text_variable(name, text)) : RITZ_OK;
 }
 
-/* Matrices as they are listed, with every entry stored by columns. */
 ritz_status ritz_mat_put_matrices(ritz_mat_sheet *s, const ritz_matrices *list)
 {
     for (int64_t k = 0; k < list->count; k++) {
@@ -140,7 +139,7 @@ ritz_status ritz_mat_sheet_open(const char *path, ritz_mat_sheet *out)
     return RITZ_OK;
 }
 
-/* Whether the file holds the matrices that were to be written, to the bit. */
+/* Check that the file contains the matrices, to the bit. */
 static ritz_status compare_file(const char *path, const ritz_matrices *list)
 {
     RITZ_OWN(ritz_foreign) back = {0};

@@ -113,7 +113,7 @@ static ritz_status name_file(const char *output, const char *name, char **out)
     return RITZ_OK;
 }
 
-/* "matrix K" and the certificate below it. */
+/* Make the comment: "matrix K", then the certificate. */
 static ritz_status join_comment(const char *name, const char *certificate,
                                 char **out)
 {

@@ -11,12 +11,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The dofs that T and the recovery know, by name. */
+/* The dofs whose displacements follow from T q: the rows of T, and behind them
+   the recovered dofs, which depend on these. */
 typedef struct displacement_source {
     const ritz_reduced *reduced;
     ritz_dof *dof;
     ritz_roster roster;
-    ritz_sparse from; /* G', whose column k is recovered dof k */
+    ritz_sparse from; /* G'; column k gives recovered dof k by rows of T */
 } displacement_source;
 
 static void displacement_source_free(displacement_source *source)

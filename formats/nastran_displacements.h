@@ -1,4 +1,4 @@
-/* Displacements that NASTRAN recovers of a superelement. */
+/* Displacements that NASTRAN recovers from the solution of a superelement. */
 #ifndef RITZ_FORMATS_NASTRAN_DISPLACEMENTS_H
 #define RITZ_FORMATS_NASTRAN_DISPLACEMENTS_H
 

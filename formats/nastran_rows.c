@@ -1,4 +1,5 @@
-/* The dofs of the coordinates of a reduced component: formats/nastran_rows.h. */
+/* Finds the grid and direction, or the scalar point, of each coordinate of a
+ * reduced component. */
 #include "formats/nastran_rows.h"
 
 #include "base/alloc.h"
@@ -61,8 +62,8 @@ static int64_t find_largest(const ritz_reduced *reduced)
     return largest;
 }
 
-/* Scalar points begin behind the next power of ten or, if there is no room,
-   behind the last grid. */
+/* Numbers of scalar points begin after the next power of ten above all grids
+   or, if there is no room, after the last grid. */
 static ritz_status number_points(const ritz_reduced *reduced,
                                  ritz_nastran_rows *rows)
 {

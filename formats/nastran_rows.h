@@ -1,42 +1,43 @@
-/* Rows of matrices for NASTRAN, shared by its exporters. */
+/* The rows of matrices for NASTRAN; for its exporters. */
 #ifndef RITZ_FORMATS_NASTRAN_ROWS_H
 #define RITZ_FORMATS_NASTRAN_ROWS_H
 
 #include <ritz/export.h>
 
-enum { RITZ_NASTRAN_MOST_ID = 99999999 }; /* of grids, points and others */
+enum { RITZ_NASTRAN_MOST_ID = 99999999 }; /* largest number of a card */
 
-/* The dof of each coordinate of a reduced component. */
+/* The grid and direction, or scalar point, of each reduced coordinate. */
 typedef struct ritz_nastran_rows {
     int64_t order; /* r */
     ritz_dof *dof; /* r */
-    int64_t *at;   /* r, coordinates with their dofs ascending: those of grids,
-                      then scalar points */
-    int64_t num_interface; /* dofs of grids */
-    int64_t first_point;   /* number of the first scalar point; the others
-                              follow in the order of columns */
+    int64_t *at;   /* r, the coordinates in ascending order of their dofs:
+                      those of grids, then scalar points */
+    int64_t num_interface; /* coordinates that are dofs of grids */
+    int64_t first_point;   /* number of the scalar point of the first other
+                              coordinate; the next have the next numbers */
 } ritz_nastran_rows;
 
 /**
- * A coordinate belongs to a grid if its column is that of a constraint, whose
- * row of T is a unit vector: then q_j is that displacement itself, along the
- * grid's own axes. All others become scalar points, with numbers behind the
- * next power of ten above all grids or, if there is no room, behind the last
- * grid.
+ * Find the dof of each coordinate. If column j of the basis is a constraint
+ * mode and the row of its dof in T is the unit vector e_j, then q_j is the
+ * displacement of that dof, along the axes of its grid. All other coordinates
+ * become scalar points, with numbers after the next power of ten above all
+ * grids or, if there is no room, after the last grid.
  *
  * @param[in] format  for messages: "DMIG"
- * @return RITZ_ERR_ARGUMENT if an attached dof has no such coordinate, none has
- *         one, there is no basis, or numbers do not suffice
+ * @return RITZ_ERR_ARGUMENT if no coordinate is the displacement of an attached
+ *         dof, no dof is attached, there is no basis, or there are not enough
+ *         numbers for scalar points
  */
 ritz_status ritz_nastran_rows_new(const ritz_reduced *reduced,
                                   const char *format, ritz_nastran_rows *out);
 
-/** Say which coordinates are dofs of grids and which are points. */
+/** Report how many coordinates are dofs of grids, and which are points. */
 ritz_status ritz_nastran_rows_say(const ritz_nastran_rows *rows,
                                   ritz_export_report *report);
 
-/** Say which ports have a grid without such a coordinate. @param[in] words
- * what becomes of such a port */
+/** Report ports with grids whose displacements are not coordinates.
+ * @param[in] words  what the format does with such a port, for the sentence */
 ritz_status ritz_nastran_rows_say_ports(const ritz_nastran_rows *rows,
                                         const ritz_reduced *reduced,
                                         const char *words,

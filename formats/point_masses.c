@@ -1,7 +1,7 @@
 /*
- * Point masses with given invariants of inertia, for formats that hold a body
- * as masses at nodes. The fields 1, x, y, z and psi_aj (translation along axis
- * a in mode j) have the products
+ * Finds point masses with given invariants of inertia, for formats that
+ * describe the inertia of a body by masses at nodes. The fields 1, x, y, z and
+ * psi_aj, the translation along axis a in mode j, have the products
  *
  *     G_fg = integral of f g dm        G of order p = 4 + 3m
  *
@@ -11,19 +11,20 @@
  *     F'diag(m_i) F = G,   F_i1 = 1
  *
  * G is positive semidefinite for solids and lumped masses. Its eigenvalues give
- * G = B'B with as many rows as its rank, and so does (HB)'(HB) with H
- * orthogonal. The Householder reflection that makes the first column of HB
- * constant makes each row a point, all of the same mass.
+ * G = B'B, where B has as many rows as the rank of G, and G = (HB)'(HB) for any
+ * orthogonal H. Take for H the Householder reflection that makes the first
+ * column of HB constant. Then each row of HB is a point, and all points have
+ * the same mass.
  *
- * Rotary inertia that no body has, as J_x alone, and products that are
- * approximate can make G indefinite: G = B'B - C'C. The rows of C become points
- * of negative mass in the same way. With C e_1 near 0 they would be far away:
- * so e_1' sqrt(mass) is a row more of both B and C, which changes nothing in
- * their difference.
+ * G is indefinite if invariants are approximate, or if grids have rotary
+ * inertia that no distribution of mass has, such as J_x alone. Then G = B'B -
+ * C'C, and the rows of C become points of negative mass in the same way. If C
+ * e_1 is small, these points would be far away. So the row e_1' sqrt(mass) is
+ * appended to both B and C, which does not change B'B - C'C.
  *
- * Linear and angular momenta of the modes are of all of M: (x, psi) is the
- * symmetric part of the sums of products and the antisymmetric part that
- * belongs to the angular momentum, as for Exudyn.
+ * The momenta of the modes are computed from all of M. So (x, psi) has the
+ * antisymmetric part that belongs to the angular momentum, and the symmetric
+ * part of the integrals, as in the file of Exudyn.
  */
 #include "formats/point_masses.h"
 
@@ -49,8 +50,8 @@ static void put_pair(ritz_dense *G, int64_t i, int64_t j, double value)
     ritz_dense_col(G, i)[j] = value;
 }
 
-/* Products of 1 and x: with J_o the inertia about the origin, those of x and x
-   are tr(J_o) / 2 I - J_o. */
+/* Products of the fields 1 and x: int x x' dm = tr(J_o) / 2 I - J_o, where J_o
+   is the inertia about the origin. */
 static void put_rigid(const ritz_inertia *inertia, ritz_dense *G)
 {
     const double *c = inertia->centre;
@@ -68,7 +69,7 @@ static void put_rigid(const ritz_inertia *inertia, ritz_dense *G)
     }
 }
 
-/* Products of 1 and x with mode j. */
+/* Products of the fields 1 and x with mode j. */
 static void put_momenta(const ritz_invariants *of, int64_t j, ritz_dense *G)
 {
     int64_t m = of->momentum.ncol;
@@ -107,8 +108,9 @@ static ritz_status multiply_fields(const ritz_inertia *inertia,
 }
 
 /*
- * Size of each field: of 1, of a position, of each mode by all of its kinetic
- * energy. A mode may turn what it does not move: its own product may be 0.
+ * The sizes by which fields are scaled: that of a mode is the square root of
+ * its modal mass, since the product of a mode of rotations with itself may be
+ * 0.
  */
 static ritz_status size_fields(const ritz_inertia *inertia, const ritz_dense *G,
                                const ritz_dense *M, double **size)
@@ -135,7 +137,7 @@ static ritz_status size_fields(const ritz_inertia *inertia, const ritz_dense *G,
 
 /* ---- points ------------------------------------------------------------- */
 
-/* Eigenvectors of G, whose fields are divided by their sizes. */
+/* Eigenvectors and eigenvalues of G, for fields divided by their sizes. */
 typedef struct field_axes {
     ritz_dense Q;
     double *lambda, *size;
@@ -168,7 +170,8 @@ static ritz_status find_axes(const ritz_inertia *inertia,
     return RITZ_OK;
 }
 
-static int64_t count_beyond(const field_axes *axes, double sign)
+/* Number of eigenvalues of one sign that are not rounding errors. */
+static int64_t count_of_sign(const field_axes *axes, double sign)
 {
     int64_t count = 0;
 
@@ -177,14 +180,15 @@ static int64_t count_beyond(const field_axes *axes, double sign)
     return count;
 }
 
-/* Rows sqrt(|lambda|) q' of one sign and, if `paired`, e_1'. */
+/* B has a row sqrt(|lambda|) q' for each eigenvalue of one sign and, if
+   `paired`, the row e_1'. */
 static ritz_status list_rows(const field_axes *axes, double sign, bool paired,
                              ritz_dense *B)
 {
     int64_t p = axes->Q.ncol;
     int64_t row = 0;
 
-    RITZ_CHECK(ritz_dense_new(count_beyond(axes, sign) + paired, p, B));
+    RITZ_CHECK(ritz_dense_new(count_of_sign(axes, sign) + paired, p, B));
     for (int64_t k = 0; k < p; k++) {
         double root = sqrt(fabs(axes->lambda[k]));
 
@@ -199,8 +203,8 @@ static ritz_status list_rows(const field_axes *axes, double sign, bool paired,
     return RITZ_OK;
 }
 
-/* B := (I - 2 v v'/ v'v) B, which makes its first column constant and positive.
-   Returns that constant. */
+/* B := (I - 2 v v'/ v'v) B, with v such that the first column becomes constant
+   and positive. *out is that constant. */
 static ritz_status level_first(ritz_dense *B, double *out)
 {
     int64_t n = B->nrow;
@@ -232,7 +236,7 @@ static ritz_status level_first(ritz_dense *B, double *out)
     return RITZ_OK;
 }
 
-/* Points of the rows B, from point `first` on. */
+/* Make points of the rows of B, from point `first` on. */
 static ritz_status put_points(const field_axes *axes, double sign,
                               ritz_dense *B, int64_t first,
                               ritz_point_masses *out)
@@ -262,7 +266,7 @@ ritz_status ritz_point_masses_of(const ritz_inertia *inertia,
     bool paired = false;
 
     RITZ_CHECK(find_axes(inertia, invariants, M, &axes));
-    paired = count_beyond(&axes, -1.0) > 0;
+    paired = count_of_sign(&axes, -1.0) > 0;
     points.least = axes.lambda[0] / axes.lambda[axes.Q.ncol - 1];
     RITZ_CHECK(list_rows(&axes, 1.0, paired, &B));
     RITZ_CHECK(list_rows(&axes, -1.0, paired, &C));

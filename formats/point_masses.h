@@ -8,22 +8,23 @@
 
 typedef struct ritz_point_masses {
     int64_t count;
-    int64_t num_negative; /* of them with a negative mass, the last ones */
+    int64_t num_negative; /* the last points, whose mass is negative */
     double *mass;         /* count */
     ritz_dense field;     /* count x (3 + 3m): x, y, z; in column 3 + a m + j
                              the translation along axis a in mode j */
-    double least; /* least eigenvalue of the products, over the largest */
+    double least; /* smallest eigenvalue of the products over the largest */
 } ritz_point_masses;
 
 /**
- * Few points p whose sums over masses are the invariants of a body of m modes:
- * mass, static moment, inertia, and with positions x and modes psi
+ * Find point masses that have the invariants of a body with m modes: its mass,
+ * static moment and inertia and, with positions x and modes psi, the sums over
+ * points
  *
  *     sum m psi_j,   sum m x psi_j',   sum m psi_j psi_k'
  *
- * There are 4 + 3m at most, two more if some must be negative.
+ * There are at most 4 + 3m points, two more if some masses are negative.
  *
- * @param[in] M  m x m, whose diagonal is the size of each mode
+ * @param[in] M  m x m, modal masses on its diagonal, by which modes are scaled
  * @return RITZ_ERR_CONVERGENCE if LAPACK finds no eigenvalues
  * @cost   O(m^3), 27 m^2 doubles
  */

@@ -1,4 +1,4 @@
-/* A flexible body in Standard Input Data, before it is text. */
+/* The contents of a file of Standard Input Data. */
 #ifndef RITZ_FORMATS_SID_H
 #define RITZ_FORMATS_SID_H
 
@@ -10,7 +10,7 @@ typedef struct sid_body {
     ritz_sid_terms terms;
 } sid_body;
 
-/** @return as ritz_normal_body_of */
+/** Make the contents of the file. @return as ritz_normal_body_of */
 ritz_status sid_body_of(const ritz_reduced *reduced,
                         const ritz_export_request *request, sid_body *out);
 

@@ -76,7 +76,7 @@ ritz_status ritz_export_check(const ritz_exporter *exporter,
     const struct {
         bool given;
         int takes;
-        const char *lack; /* said of an exporter that does not take it */
+        const char *lack; /* the refusal of an exporter without the option */
     } option[] = {
         {request->matrices != NULL, RITZ_EXPORT_MATRICES,
          "has no matrices to choose"},
@@ -284,8 +284,7 @@ static ritz_status fill_matrix(const entry *e, const ritz_dense *A,
     return RITZ_OK;
 }
 
-/* Rows that recover a quantity of a reduced component; NULL: there are none of
-   that name. */
+/* The quantity of a reduced component with a name; NULL if there is none. */
 static const ritz_quantity *find_quantity(const ritz_export_object *object,
                                           const char *name, size_t length)
 {

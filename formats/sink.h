@@ -30,13 +30,13 @@ ritz_status ritz_output4_fill(const ritz_draft *draft, int64_t count,
                               const ritz_matrix *matrix,
                               const ritz_output4_style *style);
 
-/** The digits of text that are to be written, and a line of the report if these
- * round values. */
+/** Find the style of OUTPUT4 that is requested. Report it if its digits round
+ * values. */
 ritz_status ritz_output4_style_of(const ritz_export_request *request,
                                   ritz_export_report *report,
                                   ritz_output4_style *out);
 
-/** @p A with every entry stored, zeros too. */
+/** Copy @p A to a sparse matrix that stores every entry, zeros too. */
 ritz_status ritz_sink_store(const ritz_dense *A, ritz_sparse *out);
 
 /** Refuse a matrix that holds a value that is not finite, naming it. */
@@ -64,14 +64,14 @@ ritz_status ritz_export_damped(const ritz_export_object *object,
                                const char *usual, ritz_export_report *report,
                                ritz_matrices *out);
 
-/** Refuse other units than kg, m and s. @param[in] program  that takes these,
- * for the sentence: "OpenFAST" */
+/** Refuse units other than kg, m and s. @param[in] program  its name, for the
+ * sentence: "OpenFAST" */
 ritz_status ritz_export_demand_si(const char *units, const char *program);
 
-/** @p n rows of as many numbers, with 17 digits; A {0}: zeros. */
+/** Put the n x n matrix @p A by rows, with 17 digits; zeros if A is {0}. */
 void ritz_rows_put(FILE *file, const ritz_dense *A, int64_t n);
 
-/* What a VTK unstructured grid is made of. */
+/* The contents of a VTK unstructured grid. */
 typedef struct ritz_vtu_parts {
     const ritz_shapes *shapes;
     const char *certificate;
@@ -85,23 +85,29 @@ ritz_status ritz_vtu_print(FILE *file, const void *what);
  * "cells" and "points" of an HDF5 file.
  */
 
-/** Write "points", "grids" and "cells" of shapes. */
+/** Write the data sets "points", "grids" and "cells" of shapes. */
 ritz_status ritz_xdmf_write_mesh(hid_t file, const ritz_shapes *shapes);
 
-/** Put <Topology> and <Geometry>. @param[in] heavy  name of that file */
+/** Put <Topology> and <Geometry>. @param[in] heavy  name of the HDF5 file */
 void ritz_xdmf_put_mesh(FILE *file, const char *heavy,
                         const ritz_shapes *shapes);
 
-/** Put an attribute that refers to data set @p set of @p rows x @p columns, 0
- * for a vector. @param[in] kind  "Vector" or "Scalar", then "Node" or "Cell" */
+/* An <Attribute> of XDMF. */
 typedef struct ritz_xdmf_field {
-    const char *name, *kind, *centre, *type, *set;
-    int64_t rows, columns;
+    const char *name;
+    const char *kind;      /* "Vector", "Scalar" */
+    const char *centre;    /* "Node", "Cell" */
+    const char *type;      /* "Float", "Int" */
+    const char *set;       /* name of its data set */
+    int64_t rows, columns; /* of the data set; 0 columns: it is a vector */
 } ritz_xdmf_field;
+
+/** Put an <Attribute> that refers to its data set in the file @p heavy. */
 void ritz_xdmf_put_field(FILE *file, const char *heavy,
                          const ritz_xdmf_field *field);
 
-/** "shapes.xdmf.h5". @return RITZ_ERR_ARGUMENT if the name holds ':' */
+/** Name the HDF5 file "shapes.xdmf.h5" after "shapes.xdmf".
+ * @return RITZ_ERR_ARGUMENT if the name contains ':' */
 ritz_status ritz_xdmf_name_heavy(const char *output, char **out);
 
 /** @p text with markup as entities and control characters as '?'. */

@@ -1,6 +1,6 @@
 /*
- * Cards of small fields [MSC2022]: a name and eight fields of eight columns, and
- * continuations that begin with a blank field.
+ * Writes cards in the small-field format [MSC2022]: a name and eight fields,
+ * all of eight columns; continuation lines begin with a blank field.
  */
 #include "formats/small_field.h"
 

@@ -1,18 +1,18 @@
-/* Cards with fields of eight columns, shared by writers of bulk data. */
+/* Cards with fields of eight columns, for writers of bulk data. */
 #ifndef RITZ_FORMATS_SMALL_FIELD_H
 #define RITZ_FORMATS_SMALL_FIELD_H
 
 #include <stdint.h>
 #include <stdio.h>
 
-/* A card that is being written. A field that does not fit into the line begins
- * the next one, which continues the card. */
+/* A card that is being written. After eight fields the next one begins a
+ * continuation line. */
 typedef struct ritz_small_card {
     FILE *file;
-    int fields; /* on the present line */
+    int fields; /* in the present line */
 } ritz_small_card;
 
-/** Begin a card, of which the name fills the first field. */
+/** Begin a card with its name. */
 ritz_small_card ritz_small_begin(FILE *file, const char *name);
 
 /** Put a field of at most eight letters, or a number of at most eight figures.
@@ -23,7 +23,7 @@ void ritz_small_id(ritz_small_card *card, int64_t id);
 /** Leave the rest of the line blank. */
 void ritz_small_skip(ritz_small_card *card);
 
-/** "FIRST THRU LAST", or the number of a single one. */
+/** Put "FIRST THRU LAST", or FIRST alone if @p count is 1. */
 void ritz_small_range(ritz_small_card *card, int64_t first, int64_t count);
 
 void ritz_small_end(const ritz_small_card *card);
