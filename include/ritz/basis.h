@@ -354,8 +354,8 @@ ritz_status ritz_gramians_of_space(const ritz_state_space *model,
  * with sparse factors, for models whose poles, except those at 0, are all left
  * of the imaginary axis; `projection`, by Galerkin's condition in the span of
  * ADI's columns, with the residual of that solution, for models of which E and
- * -(A + A') are definite; `auto`, which takes `dense` for a dense model, and for
- * a sparse one `low-rank` or, where ADI does not converge and the model is
+ * -(A + A') are definite; `auto`, which takes `dense` for a dense model, and
+ * for a sparse one `low-rank` or, where ADI does not converge and the model is
  * small enough, `dense`.
  *
  * @param[in] band_hz  the two ends of a band, whose Gramians are found by
@@ -390,14 +390,14 @@ typedef struct ritz_gramians_request {
  * low-rank.
  *
  * `residual` is a norm of S R S', R the residual of an equation, relative to
- * that of its load. With low-rank, S is diagonal, so that squares of the rows of
- * S R are energies: 1/sqrt(M_ii) for momenta, and for displacements sqrt(K_ii)
- * (first equation) or for forces 1/sqrt(K_ii) (second); the norm is the 2-norm.
- * With projection, S weights whole vectors, and the norm is that of Frobenius:
- * |S (u, f)|^2 is u'M u + f'K_s^-1 f for displacements u and forces f in the
- * first equation; in the second, f'K_s^-1 f + w_0^2 g'K_s^-1 g for the rows f of
- * displacements and g of velocities. w_0 is the lowest angular frequency, and
- * K_s = K + mu M, mu = w_0^2 for a free body and 0 for others.
+ * that of its load. With low-rank, S is diagonal, so that squares of the rows
+ * of S R are energies: 1/sqrt(M_ii) for momenta, and for displacements
+ * sqrt(K_ii) (first equation) or for forces 1/sqrt(K_ii) (second); the norm is
+ * the 2-norm. With projection, S weights whole vectors, and the norm is that of
+ * Frobenius: |S (u, f)|^2 is u'M u + f'K_s^-1 f for displacements u and forces
+ * f in the first equation; in the second, f'K_s^-1 f + w_0^2 g'K_s^-1 g for the
+ * rows f of displacements and g of velocities. w_0 is the lowest angular
+ * frequency, and K_s = K + mu M, mu = w_0^2 for a free body and 0 for others.
  *
  * @return RITZ_ERR_ARGUMENT if it has no inputs or no outputs, or the engine
  *         does not fit it; RITZ_ERR_CONVERGENCE if the rank grows too large
@@ -437,31 +437,32 @@ double ritz_hankel_bound(int64_t count, const double *sigma, int64_t kept);
 void ritz_gramians_free(ritz_gramians *gramians);
 void ritz_balanced_free(ritz_balanced *balanced);
 
-/* What mode acceleration was made of. */
+/* Report of ritz_mode_acceleration(). */
 typedef struct ritz_mode_accelerations {
-    int64_t count;   /* quantities that have it */
+    int64_t count;   /* quantities with mode acceleration */
     int64_t motions; /* rigid motions that the ports leave free */
-    double rigid;    /* largest |S R| / (|S||R|) of the rows of these, R the
-                        rigid motions */
-    char
-        reason[4 * RITZ_NAME_SIZE]; /* why the last of the others has not; "" */
+    double rigid; /* largest |S R| / (|S||R|) of the rows of these quantities,
+                        with R the rigid motions */
+    char reason[4 * RITZ_NAME_SIZE]; /* why a quantity, the last of several, has
+                                        no mode acceleration; "" */
 } ritz_mode_accelerations;
 
 /**
- * Add mode acceleration to the quantities of a reduced component: Q, V, A, F
- * and H, from a static solution with the dofs of the ports given by T q, and
- * under inertia relief where these leave rigid motion free. Not of kind
- * acceleration, nor of a quantity whose rows follow a free rigid motion.
+ * Add mode acceleration, that is Q, V, A, F and H, to the quantities of a
+ * reduced component. It comes from a static solution of the full component in
+ * which the dofs of the ports move by T q; where they leave a rigid motion
+ * free, inertia relief balances the loads. Quantities of kind acceleration have
+ * none, nor have quantities that change in a free rigid motion.
  *
  * @param[in] T        n x r, of the basis that made @p reduced
- * @param[in] ports    ports on which forces act that no input is, names with
- *                     commas between them; NULL: all, "": none
- * @param[in,out] reduced  its quantities are those of the component; after a
- *                     failure some may have parts
+ * @param[in] ports    names, with commas between them, of ports on which forces
+ *                     act that are no inputs; NULL: all, "": none
+ * @param[in,out] reduced  has the quantities of the component; after a failure
+ *                     some of them may have some of these matrices
  * @return RITZ_ERR_ARGUMENT if there are no quantities, no such port or sizes
- *         disagree; RITZ_ERR_SINGULAR as ritz_eigen_sparse, or if K has no
- *         factor but for rigid motion
- * @cost   a factor, and 2 r solves, 3 r with a damping matrix
+ *         disagree; RITZ_ERR_SINGULAR as ritz_eigen_sparse, or if K is singular
+ *         with its rigid motions held
+ * @cost   one factor and 2 r solves, 3 r with a damping matrix
  * @see    [CraigKurdila2006]
  */
 ritz_status ritz_mode_acceleration(const ritz_component *component,

@@ -73,8 +73,8 @@ typedef struct ritz_stamp {
     int64_t num_inputs;
     char *const *input; /* "SHA256  NAME", one for each file that was read */
     const char *interrupted; /* what a signal has cut short; NULL: nothing */
-    /* commands that made the model, with its band and limits; containers do not
-       store it; NULL: not known */
+    /* the commands that made and measured the exported model, for certificates;
+       containers do not store it; NULL: not known */
     const char *source;
 } ritz_stamp;
 

@@ -36,9 +36,9 @@ typedef struct ritz_shapes {
     bool coupled; /* a damping matrix may couple modes, which no ratio says */
     bool structural; /* there is structural damping, which no ratio includes */
     char units[RITZ_NAME_SIZE];    /* "kg m s"; "" if not known */
-    int64_t num_fields;            /* values of cells; modes have none */
+    int64_t num_fields;            /* fields with a value for each cell */
     char (*field)[RITZ_NAME_SIZE]; /* num_fields, "stress sx" */
-    double *of_cell; /* [k * cells.count + cell] of field k; NaN: none */
+    double *of_cell; /* [k * cells.count + cell] in field k; NaN: no value */
 } ritz_shapes;
 
 /**
@@ -76,47 +76,52 @@ ritz_status ritz_shapes_of_basis(const ritz_basis *basis,
                                  const ritz_component *component,
                                  const char *list, ritz_shapes *out);
 
-/** Columns of T of a reduced component: the points' motion is the sum of these
- * times its coordinates. @return RITZ_ERR_ARGUMENT as ritz_shapes_of_reduced */
+/** The columns of T as shapes: the motion of the points is their sum, each
+ * times its reduced coordinate. @return RITZ_ERR_ARGUMENT as
+ * ritz_shapes_of_reduced */
 ritz_status ritz_shapes_of_motion(const ritz_reduced *reduced,
                                   ritz_shapes *out);
 
 void ritz_shapes_free(ritz_shapes *shapes);
 
 /*
- * A reduced component in motion: its points displaced, and its cells with the
- * rows of quantities that are of their elements. A quantity has a field of its
- * name, the value of the largest size of each element, and one more for each
- * word of its rows, "stress sx", if these are no more than 31.
+ * The mesh of a reduced component at one time: displaced points, and cells with
+ * values of quantities such as stresses. A quantity with a row for each element
+ * and part ("sx") has a field of its name, which is the row of the largest
+ * magnitude of each element, and a field for each part, "stress sx", if there
+ * are 2 to 31 parts.
  */
 typedef struct ritz_moving {
     const ritz_reduced *reduced; /* borrowed */
-    ritz_shapes columns;         /* of T */
-    ritz_shapes frame;     /* one shape; points and cells are borrowed from
-                                    `columns` */
-    int64_t *first, *last; /* of each row: cells in `order`, none if equal */
-    int64_t *order;        /* cells by number of their element */
-    int64_t *field;        /* of each row, -1: only that of the quantity */
-    int64_t *whole;        /* field of each quantity, -1: none */
-    int64_t num_lost;      /* rows of elements that are no cell */
+    ritz_shapes columns;         /* those of T */
+    ritz_shapes frame;     /* the present time: one shape, and fields; borrows
+                              points and cells from `columns` */
+    int64_t *first, *last; /* the element of row i has the cells
+                              order[first[i]] to order[last[i] - 1] */
+    int64_t *order;        /* cells in the order of their elements' numbers */
+    int64_t *field;        /* field of the part of each row; -1: none */
+    int64_t *whole;        /* field of each quantity; -1: none */
+    int64_t num_lost;      /* rows whose element has no cell */
 } ritz_moving;
 
 /** @return RITZ_ERR_ARGUMENT as ritz_shapes_of_motion */
 ritz_status ritz_moving_new(const ritz_reduced *reduced, ritz_moving *out);
 
-/** Move the points to coordinates @p q, and take all values off the cells. */
+/** Move the points to coordinates @p q, and clear all values of cells. */
 void ritz_moving_to(ritz_moving *moving, const double *q);
 
-/** Put the rows of quantity @p k on the cells. */
+/** Set the values of cells in the fields of quantity @p k.
+ * @param[in] y  the rows of the quantity */
 void ritz_moving_paint(ritz_moving *moving, int64_t k, const double *y);
 
 void ritz_moving_free(ritz_moving *moving);
 
-/* Shapes over time, a frame for each time, of which none is kept in memory. */
+/* A file of shapes over time that is being written. Frames are written one by
+   one, and none stays in memory. */
 typedef struct ritz_series {
     const struct ritz_series_format *format;
-    void *own;           /* of the format */
-    char *comment;       /* the certificate of the component */
+    void *own;           /* data of the format */
+    char *comment;       /* certificate of the component */
     int64_t count, room; /* frames */
     double *seconds;     /* count */
 } ritz_series;
@@ -125,19 +130,20 @@ typedef struct ritz_series_format {
     const char *name; /* "pvd" */
     const char *summary;
     const char *reference; /* key in docs/references.bib */
-    /** @param[in] mesh  points and cells of all frames, borrowed to the end */
+    /** Begin the files. @param[in] mesh points and cells of all frames,
+     * borrowed until end() */
     ritz_status (*begin)(const char *path, const ritz_shapes *mesh,
                          ritz_series *series);
     /** Write frame series->count. @param[in] frame  one shape and its fields */
     ritz_status (*frame)(ritz_series *series, const ritz_shapes *frame);
-    /** Write what joins the frames to @p path, which may be another than that
-     * of begin, and publish it. */
+    /** Write the list of frames, and give it the name @p path, which may differ
+     * from that of begin(). */
     ritz_status (*finish)(ritz_series *series, const char *path);
-    /** Free, and remove frames of a series that was not finished. */
+    /** Free the series. Remove its frames if it was not finished. */
     void (*end)(ritz_series *series);
 } ritz_series_format;
 
-/** All formats of series, ended by NULL. */
+/** All formats of series, the last entry is NULL. */
 extern const ritz_series_format *const ritz_series_formats[];
 extern const ritz_series_format ritz_series_format_pvd;
 extern const ritz_series_format ritz_series_format_xdmf;
@@ -156,9 +162,7 @@ ritz_status ritz_series_frame(ritz_series *series, double seconds,
 ritz_status ritz_series_finish(ritz_series *series, const char *path);
 void ritz_series_free(ritz_series *series);
 
-/*
- * Series that ritz_series_format_pvd wrote, for pictures of them.
- */
+/* Reading of series that ritz_series_format_pvd wrote, for pictures. */
 
 enum { RITZ_COLLECTION_NAME = 1024 };
 
@@ -168,20 +172,22 @@ bool ritz_collection_recognise(const char *text);
 /**
  * The next frame of a list.
  *
- * @param[in,out] text  what follows is left
+ * @param[in,out] text  moved behind the frame
  * @param[out]    name  of its file, relative to the folder of the list
- * @return RITZ_ERR_FORMAT if it is elsewhere, or has no time
+ * @return RITZ_ERR_FORMAT if the file is outside of this folder, or the frame
+ *         has no time
  */
 ritz_status ritz_collection_next(const char **text, double *seconds,
                                  char name[RITZ_COLLECTION_NAME], bool *more);
 
-/** Points, displacement, cells and the first of their values of a frame.
- * @return RITZ_ERR_FORMAT if it is none that is text */
+/** Read a frame: points, displacements, cells, and the first field of the
+ * cells.
+ * @return RITZ_ERR_FORMAT if it is no VTK file whose arrays are text */
 ritz_status ritz_frame_parse(const char *text, ritz_shapes *out);
 ritz_status ritz_frame_read(const char *path, ritz_shapes *out);
 
-/** Write maxima as a table with tabs, a line for each row of each quantity,
- * behind comments with the certificate of the component. */
+/** Write maxima over time as a table with tabs: comments with the certificate
+ * of the component, then a line for each row of each quantity. */
 ritz_status ritz_recovered_write(const char *path,
                                  const ritz_recovered *recovered,
                                  const ritz_reduced *reduced,
@@ -196,19 +202,21 @@ typedef struct ritz_export_request {
     bool text, dense;        /* output4, superelement */
     bool numbered;           /* dmig: continuations have marks */
     int64_t digits;          /* text */
-    const char *ports;       /* names with commas between, whose grids are the
-                                interface; NULL: those that were attached */
-    int64_t id;              /* superelement: its number and the unit of its
-                                file; 0: 101 */
+    const char *ports;       /* names, with commas between them, of the ports
+                                that are the interface; NULL: those that were
+                                attached */
+    int64_t id;              /* superelement: its number, and the number of the
+                                Fortran unit of its file; 0: 101 */
     const char *modes;       /* shapes: which modes, "1-6,9"; NULL: the first
                                 ten of a component, all of anything else */
     const char *frame;       /* of a moving body: "basic", "centre" or a grid;
-                              NULL: "basic" */
+                                NULL: the usual one of the format */
     const char *reference;   /* of its modes: "none", "mean-axis" or "tangent";
-                              NULL: "none" */
+                                NULL: the usual one of the format */
     int64_t fmi;             /* fmu: version 2 or 3; 0: 3 */
     const char *runtime;     /* fmu: folder of ritz_fmu.so and its licence */
-    const ritz_stamp *stamp; /* container: its stamp; NULL: an empty one */
+    const ritz_stamp *stamp; /* inputs and commands, for containers and
+                                certificates; NULL: not known */
 } ritz_export_request;
 
 /* Lines for the user: what was written, and what was lost; one that begins with
@@ -218,8 +226,8 @@ typedef struct ritz_export_report {
     char (*line)[256];
 } ritz_export_report;
 
-/* What is exported: one of these, the others are NULL; beside shapes `reduced`
-   is the component that they are of, if they are of one. */
+/* The object to export. One pointer is set, the others are NULL; shapes of a
+   reduced component come with that component. */
 typedef struct ritz_export_object {
     const ritz_reduced *reduced;
     const ritz_state_space *states;

@@ -230,8 +230,8 @@ typedef struct ritz_deck {
     int64_t num_external;
     ritz_dof *external; /* rows of the matrices of an external superelement, in
                            their order (EXTRN) */
-    char *external_twice; /* sentence about one that is named twice, as if there
-                             were two superelements; NULL: none is */
+    char *external_twice; /* error sentence if EXTRN names a row twice, as in a
+                             deck with two superelements; NULL: it does not */
     int64_t num_constraints;
     char (*constraint)[RITZ_NAME_SIZE]; /* "RBE2 600": what makes dofs depend on
                                            others */
@@ -311,8 +311,10 @@ typedef struct ritz_import_request {
     const char *output_matrix, *velocity_matrix, *acceleration_matrix;
     const char *input_names, *output_names; /* as for a state space */
     int64_t num_recoveries, num_recovery_rows;
-    const char *const *recovery;      /* "NAME=F[,KIND]": rows of a quantity */
-    const char *const *recovery_rows; /* "NAME=FILE": what these rows are */
+    const char *const *recovery;      /* "NAME=F[,KIND]": matrix S of a quantity
+                                         to recover, y = S u */
+    const char *const *recovery_rows; /* "NAME=FILE": list of the elements or
+                                         grids of its rows */
     int64_t num_dampers;
     const char *const *damper; /* "NAME=GRID:COMP[,GRID:COMP]*C[*K]" */
     const char *units;
@@ -384,8 +386,9 @@ typedef struct ritz_import_report {
  * refer to the rows of the mass matrix, along displacement axes: B is n x m,
  * and C, Cv and Ca are p x n (n x p where only that fits, and in files that
  * name rows). Constraints are applied to these matrices; entries of fixed dofs
- * are left out. The same holds of S in y = S u, the rows of a quantity to
- * recover, whose kind is its name where this is one, else other.
+ * are left out. The same holds for the matrix S of a quantity to recover, y =
+ * S u. If no kind is given, its name is its kind if that is the name of a kind,
+ * and otherwise the kind is "other".
  *
  * Instead of matrices, natural frequencies and optional damping ratios make a
  * component in modal form: K = diag(omega^2), M = I and D = diag(2 zeta omega).
@@ -404,6 +407,8 @@ ritz_status ritz_import(const ritz_import_request *request, ritz_component *out,
 enum { RITZ_SUPERELEMENT_RECOVERIES = 3 }; /* MUG1, MES1, MEF1 */
 
 /* Files of an external superelement of NASTRAN, as texts of a request. */
+/* The files of an external superelement of NASTRAN, as the options of an import
+   name them. */
 typedef struct ritz_superelement {
     char *stiffness, *mass, *damping, *structural_damping; /* "FILE:NAME"; NULL:
                                                               it has none */
@@ -412,8 +417,8 @@ typedef struct ritz_superelement {
     char *recovery[RITZ_SUPERELEMENT_RECOVERIES];      /* "stress=FILE:MES1" */
     char *recovery_rows[RITZ_SUPERELEMENT_RECOVERIES]; /* "stress=part.pch" */
     int64_t num_others;
-    char (*other)[RITZ_NAME_SIZE]; /* "MUG1 36 x 32": matrices that are none of
-                                      a component */
+    char (*other)[RITZ_NAME_SIZE]; /* matrices that are not read, with their
+                                      sizes: "MUG1 36 x 32" */
 } ritz_superelement;
 
 /**
@@ -421,6 +426,10 @@ typedef struct ritz_superelement {
  * the deck FILE.pch or FILE.asm beside it. DMIG in a punch file is its own
  * deck. MUG1, MES1 and MEF1 are rows to recover if a table of the deck, TUG1,
  * TES1 or TEF1, names as many rows.
+ * Find the matrices of a superelement in FILE.op4 (KAA, MAA, BAA, K4XX, or the
+ * names of NX), and next to it the deck FILE.pch or FILE.asm that names their
+ * rows. If the file is a punch file with DMIG, the matrices and the deck are
+ * both in it.
  *
  * @param[in] bulk  another deck; NULL: the one beside the file
  * @return RITZ_ERR_FORMAT if there is no stiffness or no mass, or such a table
@@ -453,6 +462,7 @@ ritz_status ritz_row_table_parse(const char *path, const char *text,
 void ritz_row_table_free(ritz_row_table *table);
 
 /** "F" of "NAME=F[,KIND]"; the caller frees @p out.
+/** Copy "F" out of "NAME=F[,KIND]"; the caller frees @p out.
  * @return RITZ_ERR_ARGUMENT if it is not of this form */
 ritz_status ritz_import_recovery_spec(const char *text, char **out);
 

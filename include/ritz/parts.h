@@ -375,57 +375,59 @@ ritz_status ritz_recovery_extend(const ritz_recovery *recovery, int64_t n,
 void ritz_recovery_free(ritz_recovery *recovery);
 
 /*
- * Quantities that follow from the motion of a model, such as stresses of
- * elements and displacements of grids that no dof was kept of, a row each:
+ * A quantity to recover from the motion of a model, such as the stresses of
+ * elements, or the displacements of grids that are not dofs of the model. It
+ * has a row for each number:
  *
- *     y = S u,   of kind acceleration y = S u''.
+ *     y = S u,   or of kind acceleration y = S u''.
  *
- * In a reduced component, u = T q, mode displacement is y = ST q, and mode
- * acceleration
+ * In a reduced component, u = T q, it is recovered by mode displacement, y =
+ * ST q, or by mode acceleration,
  *
  *     y = Q q + V q' + A q'' + F f - H (c_j b_j'T q' + k_j b_j'T q)_j
  *
- * with inputs f and dampers j: see ritz_mode_acceleration().
+ * with the inputs f and the dampers j, see ritz_mode_acceleration().
  */
 typedef struct ritz_quantity {
-    char name[RITZ_NAME_SIZE]; /* "stress" */
-    char kind[RITZ_NAME_SIZE]; /* one of ritz_quantity_kinds */
-    int64_t count;             /* rows */
-    int64_t *place; /* count, number of the grid if ritz_quantity_of_grids(),
-                       else of the element; 0: of none */
+    char name[RITZ_NAME_SIZE];    /* "stress" */
+    char kind[RITZ_NAME_SIZE];    /* one of ritz_quantity_kinds */
+    int64_t count;                /* rows */
+    int64_t *place;               /* count, number of the element or, if
+                       ritz_quantity_of_grids(), of the grid; 0: not known */
     char (*part)[RITZ_NAME_SIZE]; /* count, "sx"; may be "" */
     ritz_sparse S;                /* count x n; {0} in a reduced component */
     ritz_dense ST;                /* count x r; {0} in a component */
     ritz_dense Q, A;              /* count x r; {0}: no mode acceleration */
-    ritz_dense V;                 /* the same; {0} without damping matrix */
+    ritz_dense V;                 /* count x r; {0} without damping matrix */
     ritz_dense F, H; /* count x inputs, count x dampers; {0}: there are none */
 } ritz_quantity;
 
 /** "stress", "force", "displacement", "acceleration", "other"; then NULL. */
 extern const char *const ritz_quantity_kinds[];
 
-/** Whether the rows of a kind are of grids. */
+/** Whether the rows of a quantity of this kind belong to grids, not
+ * elements. */
 bool ritz_quantity_of_grids(const char *kind);
 
-/** "element 12 sx", "grid 101 T3", "row 7" for row 6. */
+/** Name a row: "element 12 sx", "grid 101 T3", or "row 7" for row 6. */
 enum { RITZ_QUANTITY_NAME_SIZE = RITZ_NAME_SIZE + 40 };
 const char *ritz_quantity_name(const ritz_quantity *quantity, int64_t row,
                                char text[RITZ_QUANTITY_NAME_SIZE]);
 
-/** Whether S fits @p n dofs, and names are distinct and kinds known.
- * @return RITZ_ERR_FORMAT */
+/** Check that S has @p n columns, names are distinct and kinds are known.
+ * @return RITZ_ERR_FORMAT if not */
 ritz_status ritz_quantities_check(int64_t count, const ritz_quantity *quantity,
                                   int64_t n);
 
-/** The same of a reduced component of @p r coordinates. */
+/** The same for a reduced component of @p r coordinates. */
 ritz_status ritz_quantities_check_reduced(int64_t count,
                                           const ritz_quantity *quantity,
                                           int64_t r, int64_t inputs,
                                           int64_t dampers);
 
 /**
- * In the subspace x = T q. S becomes ST; all that multiplies coordinates is
- * multiplied by T.
+ * Project quantities onto the subspace x = T q: S becomes ST, and the matrices
+ * that multiply coordinates and their rates are multiplied by T.
  *
  * @param[out] out  the caller frees each with ritz_quantity_free(), and the
  *                  array; NULL if @p count is 0

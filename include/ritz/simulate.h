@@ -100,7 +100,7 @@ typedef struct ritz_simulation_request {
     const ritz_signal *signal; /* one of each input, in their order; NULL: 0 */
     const double *x0, *v0;     /* of the model's coordinates; NULL: at rest.
                                   Of a state space x0 are its states */
-    bool coordinates;          /* of a dense model are wanted too */
+    bool coordinates;          /* store the coordinates of a dense model */
 } ritz_simulation_request;
 
 #define RITZ_SIMULATION_NONE                                                   \
@@ -127,8 +127,7 @@ typedef struct ritz_simulation {
     double *kinetic, *potential, *dissipated, *work, *balance; /* count, or
                                                                   all NULL */
     int64_t num_coordinates; /* of the model; 0: they are not stored */
-    double *q, *v, *a; /* q[k * num_coordinates + j], its rate, and the rate of
-                          that */
+    double *q, *v, *a;       /* q, q' and q'': q[k * num_coordinates + j] */
     char integrator[RITZ_NAME_SIZE];
     char hold[RITZ_NAME_SIZE]; /* "first", "zero" */
     double step;
@@ -143,8 +142,8 @@ typedef struct ritz_simulation {
  * with Rayleigh damping or that of its D. A state space goes by the exponential
  * of A, or by the trapezoidal rule.
  *
- * Coordinates of a dense model come from the same integration as its outputs:
- * they are outputs of their own.
+ * The coordinates of a dense model are computed as additional outputs of the
+ * same integration.
  *
  * An impulse moves a state at once; what of it is in an output directly, as in
  * an acceleration does, is an impulse too and left out.

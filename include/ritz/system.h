@@ -91,8 +91,8 @@ ritz_status ritz_reduced_of_configuration(const ritz_system *system,
                                           ritz_reduced *out);
 
 /**
- * Whether these are the bodies of a system, in its order: sum_c P_c' M_c P_c is
- * its mass.
+ * Check that these are the bodies of a system, in its order: that the mass of
+ * the system is sum_c P_c' M_c P_c.
  *
  * @return RITZ_ERR_ARGUMENT if they are not
  */
@@ -101,11 +101,11 @@ ritz_status ritz_system_check_bodies(const ritz_system *system,
                                      const ritz_reduced *const *bodies);
 
 /**
- * Give a system at a configuration the ports of its bodies, "body/port", where
- * the configuration puts them and along the axes of the system. Numbers of
- * grids of body k (k = 0, 1, ...) are increased by k times the power of ten
- * above all of them. A port with only some directions of a grid keeps them
- * along the axes of its body.
+ * Add the ports of its bodies, with the names "body/port", to a system that is
+ * linearised at a configuration. Their grids have the positions of the
+ * configuration and the axes of the system. Numbers of grids of body k
+ * (k = 0, 1, ...) are increased by k 10^d, where 10^d is above all numbers. A
+ * port with only some directions of a grid keeps the axes of its body.
  *
  * @param[in,out] reduced  of ritz_reduced_of_configuration, without ports
  * @return RITZ_ERR_ARGUMENT as ritz_system_check_bodies, or if the system does
