@@ -1,20 +1,23 @@
 /*
- * Mode acceleration [CraigKurdila2006], by a static solution of the forces that
- * the reduced model knows, instead of the modes that it keeps. With i the dofs
- * that no port holds, b the others, whose displacements u_b = (T q)_b are
- * given, and G = K_ii^-1 in rows and columns i and zero elsewhere,
+ * Mode acceleration [CraigKurdila2006]: quantities y = S u are recovered from
+ * the static response of the full model to all known forces, inertia forces
+ * among them, instead of from T q. Let b be the dofs of the ports, whose
+ * displacements (T q)_b are taken from the reduced model, i all other dofs, and
+ * G = K_ii^-1 in rows and columns i and zero elsewhere. Then
  *
  *     u_i = K_ii^-1 (B f - M u'' - D u' - K_ib u_b)_i,   u = T q in M and D
  *     y = S u = S (I - G K) T q + S G B f - S G D T q' - S G M T q''
  *
- * Forces of the ports are not known and act on b alone: they do not enter.
- * Where i can move rigidly without stiffness, R = [0; R_i], K_ii^-1 is the
- * elastic response of a free body, P' S P (bases/elastic.h): loads in
- * equilibrium with inertia forces of R, and a displacement without R. Rows with
- * S R = 0 do not miss it.
+ * The unknown forces at the ports act on b alone and do not appear.
  *
- * Tests hold it to the full model's own static and harmonic responses, and to
- * exactness where T is square.
+ * If i can move rigidly while b is at rest, by R = [0; R_i], then K_ii is
+ * singular. G is then the elastic response of a free body (bases/elastic.h): the
+ * loads are brought into equilibrium by inertia forces of R, and the response is
+ * M-orthogonal to R. The missing rigid part does not matter to rows with
+ * S R = 0, and other rows are refused.
+ *
+ * Tests compare it with static and harmonic responses of the full model, and
+ * with the exact solution where T is square.
  */
 #include "bases/elastic.h"
 
@@ -33,7 +36,7 @@
 /* Columns that are solved for at a time. */
 enum { BLOCK = 64 };
 
-/* Offset of the matrix of a quantity that a block belongs to. */
+/* A matrix of a quantity, as its offset in ritz_quantity. */
 typedef size_t matrix_of;
 
 enum {
@@ -49,14 +52,14 @@ static ritz_dense *matrix_at(ritz_quantity *quantity, matrix_of of)
     return (void *)((char *)quantity + of);
 }
 
-/* The static problem with the ports held, and who asks for it. */
+/* The static problem whose ports are held, and what it is solved for. */
 typedef struct statics {
     const ritz_component *full; /* borrowed, as is the next */
     ritz_reduced *reduced;
     ritz_dofs inner;  /* i */
     ritz_sparse K, M; /* at i */
     ritz_elastic body;
-    bool *wanted; /* of each quantity */
+    bool *wanted; /* of each quantity: whether it gets mode acceleration */
 } statics;
 
 static void statics_free(statics *s)
@@ -80,7 +83,7 @@ static ritz_status respond(const statics *s, ritz_dense *X)
     return RITZ_OK;
 }
 
-/* Columns first, first + 1, ... of a matrix of each quantity += sign S X. */
+/* Add sign S X to columns first, first + 1, ... of a matrix of each quantity. */
 static ritz_status add_rows(const statics *s, const ritz_dense *X, double sign,
                             int64_t first, matrix_of of)
 {
@@ -99,8 +102,8 @@ static ritz_status add_rows(const statics *s, const ritz_dense *X, double sign,
     return RITZ_OK;
 }
 
-/* A matrix of each quantity += sign S G C X, some columns at a time; C NULL is
-   the identity. */
+/* Add sign S G C X to a matrix of each quantity, BLOCK columns at a time; C NULL
+   is the identity. */
 static ritz_status add_response(const statics *s, const ritz_sparse *C,
                                 const ritz_dense *X, double sign, matrix_of of)
 {
@@ -120,7 +123,7 @@ static ritz_status add_response(const statics *s, const ritz_sparse *C,
     return RITZ_OK;
 }
 
-/* Zero matrices, and Q := S T. */
+/* Begin with Q = S T and all other matrices zero. */
 static ritz_status make_room(const statics *s)
 {
     const ritz_component *full = s->full;
@@ -218,8 +221,8 @@ static ritz_status measure_rigid(const statics *s, const ritz_sparse *S,
 }
 
 /* Whether mode acceleration recovers a quantity, and why not if it does not. */
-static ritz_status judge(const statics *s, int64_t k,
-                         ritz_mode_accelerations *out)
+static ritz_status accept_quantity(const statics *s, int64_t k,
+                                   ritz_mode_accelerations *out)
 {
     const ritz_quantity *q = &s->full->quantity[k];
     char name[RITZ_QUANTITY_NAME_SIZE];
@@ -268,7 +271,7 @@ ritz_status ritz_mode_acceleration(const ritz_component *component,
     RITZ_CHECK_IN("mode acceleration", find_statics(ports, &s));
     done.motions = s.body.Phi.ncol;
     for (int64_t k = 0; k < component->num_quantities; k++)
-        RITZ_CHECK(judge(&s, k, &done));
+        RITZ_CHECK(accept_quantity(&s, k, &done));
     if (done.count > 0)
         RITZ_CHECK_IN("mode acceleration", fill(&s, T));
     *out = done;

@@ -1,9 +1,10 @@
 /*
- * A simulation, and in it the coordinates of a dense model over time: outputs
+ * ritz_simulate. If a request wants the coordinates of a dense model over time,
+ * they are added to its outputs,
  *
- *     q = I q,   q' = I q',   q'' = I q''
+ *     q = I q,   q' = I q',   q'' = I q'',
  *
- * behind its own, so that each integrator finds them as it finds any output.
+ * so that every integrator computes them as it computes any output.
  */
 #include "simulate/motion.h"
 
@@ -12,7 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Own outputs, and `n` of each kind. */
+/* The model's own outputs, and then n coordinates, velocities and
+   accelerations. */
 static ritz_status extend_outputs(const ritz_io *own, int64_t n, ritz_io *out)
 {
     RITZ_OWN(ritz_io) io = {0};
@@ -36,7 +38,7 @@ static ritz_status extend_outputs(const ritz_io *own, int64_t n, ritz_io *out)
     return RITZ_OK;
 }
 
-/* Columns first, ... of the outputs as an array of their own. */
+/* Copy `count` outputs of every time, from number `first` on. */
 static ritz_status cut_columns(const ritz_simulation *s, int64_t first,
                                int64_t count, double **out)
 {
@@ -47,7 +49,7 @@ static ritz_status cut_columns(const ritz_simulation *s, int64_t first,
     return RITZ_OK;
 }
 
-/* Take the coordinates out of the outputs. */
+/* Move the coordinates out of the outputs, of which the first `own` stay. */
 static ritz_status part_outputs(int64_t own, int64_t n, ritz_simulation *s)
 {
     RITZ_OWN_ARRAY double *y = NULL;

@@ -1,4 +1,5 @@
-/* Connected parts of the graph of a matrix, in the order of their first rows. */
+/* Connected parts of the graph of a matrix, in the order of their smallest
+   rows. */
 #include "base/alloc.h"
 #include "simulate/motion.h"
 

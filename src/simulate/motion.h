@@ -94,15 +94,18 @@ void ritz_effective_free(ritz_effective *F);
 
 void ritz_motion_free(ritz_motion *motion);
 
-/* Modes, or states, that a matrix couples. */
+/* Groups of modes or states: a matrix couples those of one group, and none of
+   one group with one of another. */
 typedef struct ritz_groups {
     int64_t count;
     int64_t *first;  /* count + 1 */
     int64_t *member; /* of group k: member[first[k]] ... */
 } ritz_groups;
 
-/** Connected parts of the graph of a square matrix, of whose entries those up
- * to @p floor couple nothing. */
+/**
+ * Divide the rows of a square matrix D into groups, the connected parts of its
+ * graph. Entries with |D_ij| <= @p floor count as zero.
+ */
 ritz_status ritz_groups_new(const ritz_dense *D, double floor,
                             ritz_groups *out);
 void ritz_groups_free(ritz_groups *groups);

@@ -1,23 +1,25 @@
 /*
- * Rows of quantities from the coordinates of a reduced component. By mode
- * displacement y = S T q, of kind acceleration y = S T q''. By mode
- * acceleration
+ * Recovery of quantities, such as stresses, from the coordinates q of a reduced
+ * component. Mode displacement is y = S T q, or y = S T q'' for quantities of
+ * kind acceleration. Mode acceleration is
  *
  *     y = Q q + V q' + A P q'' + F f - H g,   g_j = c_j b_j'q' + k_j b_j'q
  *
- * and the forces of stated damping in addition: of a M + b K
+ * with the inputs f and the forces g of the dampers. Damping that is stated as a
+ * rule, not as a matrix, causes more forces. With A = -S G M T and
+ * Q - S T = -S G K T (bases/mode_acceleration.c), damping a M + b K adds
  *
- *     y += a A P q' + b (Q - S T) q' - b H (k_j b_j'q')_j,
+ *     a A P q' + b (Q - S T) q' - b H (k_j b_j'q')_j,
  *
- * as A = -S G M T and Q - S T = -S G K T; of damping ratios those of the modes
- * phi_k of the reduced model,
+ * where the last term is the part of K that the springs of dampers add. Damping
+ * ratios zeta_k of the modes phi_k of the reduced model add
  *
- *     y += A P W q',   W = sum_k rate_k phi_k phi_k'M_r,   rate = 2 zeta omega.
+ *     A P W q',   W = sum_k 2 zeta_k omega_k phi_k phi_k'M_r.
  *
- * P = sum_k phi_k phi_k'M_r over the modes up to the highest frequency of a
- * column. Those above are what residual and constraint columns vibrate like,
- * none of the body: a load that jumps excites them, and their accelerations
- * would be its largest.
+ * P = sum_k phi_k phi_k'M_r is the projector on the modes up to the highest
+ * frequency of a column. Modes above that frequency are those of residual and
+ * constraint columns, and are no modes of the body. A load that jumps excites
+ * them, and without P their accelerations would dominate y.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -44,7 +46,8 @@ void ritz_recoverer_free(ritz_recoverer *recoverer)
     *recoverer = (ritz_recoverer){0};
 }
 
-/* The modes that the rules use: W, {0} without ratios, and P, {0}: all. */
+/* Matrices of the head that are made of modes: W is {0} if there are no damping
+   ratios, P is {0} if it is the identity. */
 typedef struct reduced_modes {
     ritz_dense W, P;
 } reduced_modes;
@@ -108,7 +111,7 @@ static ritz_status find_modes(const ritz_reduced *reduced,
     return most > 0.0 ? sum_modes(&pairs, &MPhi, kept, &out->P) : RITZ_OK;
 }
 
-/* The part of velocities, which must be there to add to it. */
+/* Make the matrix of velocities, zero so far, if a rule has none. */
 static ritz_status need_rates(const ritz_quantity *q, ritz_recovery_rule *rule)
 {
     return rule->Cv.val ? RITZ_OK
@@ -124,8 +127,9 @@ static void add_product(double factor, const double *h, const double *b,
             ritz_dense_col(A, j)[i] += factor * h[i] * b[j];
 }
 
-/* Dampers as they are now, less what the matrices of the component hold. Of a M
-   + b K the springs are a part of K. */
+/* Forces of the dampers. What K and D of the component already hold of them is
+   subtracted from c and k. Damping a M + b K also acts on their springs, which
+   are a part of K. */
 static ritz_status add_dampers(const ritz_dampers *dampers,
                                const ritz_damping *damping,
                                const ritz_quantity *q, ritz_recovery_rule *rule)
@@ -147,7 +151,7 @@ static ritz_status add_dampers(const ritz_dampers *dampers,
     return RITZ_OK;
 }
 
-/* rule->Ca is A P already. */
+/* Forces of stated damping; rule->Ca already holds A P. */
 static ritz_status add_damping(const ritz_damping *damping, const ritz_dense *W,
                                const ritz_quantity *q, ritz_recovery_rule *rule)
 {
