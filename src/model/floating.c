@@ -21,7 +21,7 @@ static void floating_source_free(floating_source *s)
     ritz_nodes_free(&s->turn);
 }
 
-/* ---- what is needed ----------------------------------------------------- */
+/* ---- what the reduced component must have ------------------------------- */
 
 static ritz_status check_parts(const ritz_reduced *reduced)
 {
@@ -56,7 +56,8 @@ static ritz_status check_rows(const ritz_reduced *reduced)
     return RITZ_OK;
 }
 
-/* An absent direction is zero along its axis, which must be a basic one. */
+/* A direction that a grid lacks is taken as zero displacement along a basic axis.
+   Hence grids with axes of their own must have all three or none. */
 static ritz_status check_nodes(const ritz_nodes *nodes, const char *what)
 {
     for (int64_t k = 0; k < nodes->count; k++) {
@@ -73,8 +74,8 @@ static ritz_status check_nodes(const ritz_nodes *nodes, const char *what)
 }
 
 /*
- * A grid that is only recovered may lack a direction, of which nothing is
- * known: it is left out.
+ * Drop nodes that have recovered dofs alone and lack a direction: their
+ * displacement along it is not zero but unknown.
  */
 static void leave_partial(int64_t num_rows, ritz_nodes *nodes)
 {
@@ -252,8 +253,8 @@ static void note_band(const ritz_pairs *pairs, ritz_floating *f)
     f->highest_hz = ritz_eigen_hertz(pairs->lambda[pairs->Phi.ncol - 1]);
 }
 
-/* Columns of kind rigid are all of rigid motion: the others stay as they are.
- * V is left empty if they are not. */
+/* If the columns of kind rigid span all rigid motion, V selects the others;
+ * otherwise V stays empty. */
 static ritz_status keep_columns(const floating_source *s, ritz_floating *f)
 {
     const ritz_columns *columns = &s->reduced->columns;
@@ -348,7 +349,7 @@ static ritz_status diagonalise_body(const floating_source *s, ritz_floating *f)
 
 /* ---- what simulators read ----------------------------------------------- */
 
-/* K, M and D, and the band of (K, M), which W changes. */
+/* Compute K, M and D, and the frequency band of (K, M), as W changes M. */
 static ritz_status project_matrices(const floating_source *s, ritz_floating *f)
 {
     RITZ_OWN(ritz_pairs) pairs = {0};
@@ -420,7 +421,7 @@ static int64_t find_common(const ritz_nodes *from, const ritz_nodes *to,
     return found;
 }
 
-/* Where the nodes are, and Psi there. */
+/* Set the positions of the nodes and Psi at them. */
 static ritz_status shape_modes(const floating_source *s, ritz_floating *f)
 {
     RITZ_OWN(ritz_dense) Psi = {0};

@@ -1,15 +1,16 @@
 /*
- * A body in a floating frame: what simulators of flexible multibody systems
- * read. The frame carries rigid-body motion, modes the deformation from it,
+ * A body in a floating frame, as simulators of flexible multibody systems
+ * describe it. The frame has the rigid-body motion, and modes describe the
+ * deformation relative to the frame,
  *
  *     u = R (motion of the frame) + Psi eta,    Psi = T V - R W
  *
- * with R unit rigid motions about the basic origin. W makes the reference
- * condition hold: Psi = 0 at the frame's node (tangent), R'M Psi = 0 (mean
- * axes, [Buckens1963]), or W = 0 (modes as the basis has them). K R = 0, so K
- * and D are those of V, whatever W is.
+ * where R holds unit rigid motions about the basic origin. W is chosen to satisfy
+ * a reference condition: Psi = 0 at the node of the frame (tangent), R'M Psi = 0
+ * (mean axes, [Buckens1963]), or W = 0, which leaves the modes as they are in the
+ * basis. Because K R = 0, stiffness and damping do not depend on W.
  *
- * Axes are the basic ones, at every node too.
+ * All vectors are along the basic axes.
  */
 #ifndef RITZ_MODEL_FLOATING_H
 #define RITZ_MODEL_FLOATING_H
@@ -35,37 +36,38 @@ typedef struct ritz_floating {
     ritz_dense turn;  /* 3 count x m, rotations; {0}: no node has any */
     bool *rotates;    /* count: has rotations; others have 0 in `turn` */
     double origin[3]; /* of the frame, from the basic one */
-    int64_t grid;     /* whose place the origin was set to; -1: none */
+    int64_t grid;     /* grid at which the frame is; -1: none */
     ritz_frame_condition reference;
     ritz_dense V, W;      /* r x m, 6 x m */
     ritz_dense U;         /* r x m, Psi = T U */
-    ritz_dense K, M, D;   /* m x m, M = Psi'M Psi; D {0}: no damping, that of
-                           stated rules included */
+    ritz_dense K, M, D;   /* m x m, M = Psi'M Psi; D also has the damping of
+                           stated rules; {0}: there is none */
     ritz_inertia inertia; /* its centre from the origin */
-    ritz_invariants invariants; /* of Psi, about the origin, which is then
-                                   {0, 0, 0} for ritz_sid_terms_of */
-    int64_t num_rigid;          /* motions left to the frame */
-    bool kept;                  /* columns of the basis as they are */
-    bool structural; /* there is structural damping, which is nowhere here */
+    ritz_invariants invariants; /* of Psi, about the origin of the frame: call
+                                   ritz_sid_terms_of with origin {0, 0, 0} */
+    int64_t num_rigid;          /* rigid motions that the frame takes over */
+    bool kept;                  /* the modes are columns of the basis */
+    bool structural; /* the component has structural damping, which is left
+                        out */
     double lowest_hz, highest_hz; /* of (K, M) */
-    double approximate; /* kinetic energy of a mode of (K, M) that the products
-                           of invariants do not hold, relative, at its worst */
-    int64_t approximate_mode; /* which, from 0 in the order of eigenvalues */
+    double approximate;           /* ritz_inertia_loss.value and .mode */
+    int64_t approximate_mode;
 } ritz_floating;
 
 /**
  * The modes of a reduced component relative to a moving frame.
  *
- * The frame brings rigid-body motion; a mode that is rigid too would make the
- * mass matrix of the whole singular. Columns of kind rigid are left out if they
- * make up all of it, and the others stay as they are; of other bases, as of
- * Craig-Bampton, the eigenvectors of (K_r, M_r) without stiffness are left out.
+ * The frame already has the rigid-body motion. If a mode were rigid too, the mass
+ * matrix of frame and modes would be singular. If the columns of kind rigid span
+ * all rigid-body motion, they are left out and the other columns are the modes.
+ * Otherwise, as for Craig-Bampton, the modes are the eigenvectors of (K_r, M_r)
+ * that have stiffness.
  *
- * @return RITZ_ERR_ARGUMENT if it holds no basis, positions, mass or invariants,
- *         has scalar points, or is not a flexible body; if there is no such
- *         frame or reference; of a reference but none, if a rigid motion has
- *         stiffness; of tangent, if the frame is at no grid or its node does not
- *         say how it turns
+ * @return RITZ_ERR_ARGUMENT if the component has no basis, positions, mass or
+ *         invariants, has scalar points, or has no flexible mode; if there is no
+ *         such frame or reference; if the reference is tangent or mean-axis and
+ *         a rigid motion has stiffness; if it is tangent and the frame is at no
+ *         grid, or at a grid whose rotation is not known
  * @cost   O(n r m + r^3)
  */
 ritz_status ritz_floating_of(const ritz_reduced *reduced,

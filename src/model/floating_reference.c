@@ -1,20 +1,22 @@
 /*
  * Reference conditions of floating frames.
  *
- * A free body has its rigid motions in its basis, T Z = R, so that reference
- * conditions change reduced coordinates and nothing else:
+ * The basis of a free body contains its rigid motions, T Z = R. A reference
+ * condition is therefore a change of reduced coordinates,
  *
- *     Psi = T V - R W = T U,     U = V - Z W
+ *     Psi = T V - R W = T U,     U = V - Z W,
  *
- * and every product of Psi is one of T that is known. Z is the best of the basis
- * in the norm of M: Z = Phi Phi'T'MR, with all modes Phi of (K_r, M_r).
+ * and products with Psi follow from the known products with T. Z is the best
+ * approximation in the norm of M: Z = Phi Phi'T'MR, with all modes Phi of
+ * (K_r, M_r).
  *
  *     mean-axis   R'MR W = R'MT V             [Buckens1963]
  *     tangent     C Z W = C V, C the rows of T at the node of the frame
  *
  * Both are solved for motions about the centre of mass, R N, whose rotations are
- * divided by the radius of gyration: lengths cancel, and a motion that moves no
- * mass, as of grids on a line, is left out.
+ * divided by the radius of gyration, so that the unit of length does not matter.
+ * A motion that moves no mass, such as the rotation of grids on a line about
+ * that line, is left out.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -25,7 +27,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Rigid motions about the centre of mass, and what of the basis they are. */
+/* Rigid motions about the centre of mass, and their reduced coordinates. */
 typedef struct rigid_motions {
     double length; /* radius of gyration */
     int64_t count; /* of those that move mass */
@@ -41,10 +43,8 @@ static void rigid_motions_free(rigid_motions *rigid)
     ritz_dense_free(&rigid->Z);
 }
 
-/*
- * A rotation about c is one about the basic origin and a translation by
- * -e_i x c.
- */
+/* A rotation about c is the sum of a rotation about the basic origin and the
+   translation -e_i x c. */
 void ritz_floating_spin(const double *c, int i, double scale, ritz_dense *N)
 {
     int j = (i + 1) % 3;
@@ -57,8 +57,9 @@ void ritz_floating_spin(const double *c, int i, double scale, ritz_dense *N)
 }
 
 /*
- * The least w of B w = X in the sense of least squares; its rank counts singular
- * values above `least` of the largest.
+ * Replace X by the solution w of B w = X in the sense of least squares that has
+ * the smallest norm. Singular values of B up to `least` times the largest count
+ * as zero; `rank` is the number of the others.
  */
 static ritz_status solve_least(const ritz_dense *B, double least, ritz_dense *X,
                                int64_t *rank)
@@ -82,7 +83,7 @@ static ritz_status solve_least(const ritz_dense *B, double least, ritz_dense *X,
     return RITZ_OK;
 }
 
-/* N and A; motions that move no mass are not counted. */
+/* Compute N, A, and the number of motions that move mass. */
 static ritz_status find_motions(const ritz_reduced *reduced,
                                 rigid_motions *rigid)
 {
@@ -121,7 +122,7 @@ static ritz_status find_coordinates(const floating_source *s,
     return ritz_dense_mul(&pairs.Phi, &share, &rigid->Z);
 }
 
-/* w of N w = W: A w = N'R'MT V */
+/* Mean axes: W = N w with A w = N'R'MT V. */
 static ritz_status find_mean_axes(const floating_source *s,
                                   const rigid_motions *rigid,
                                   const ritz_dense *V, ritz_dense *w)
@@ -134,8 +135,8 @@ static ritz_status find_mean_axes(const floating_source *s,
     return solve_least(&rigid->A, RITZ_PORT_HELD * RITZ_PORT_HELD, w, &rank);
 }
 
-/* Rows of T of a grid's dofs, along whatever axes, those of rotations times
-   `length`, as the first six of C. */
+/* Copy the rows of T of a grid's dofs, along the grid's own axes, to the first six
+   rows of C; those of rotations are multiplied by `length`. */
 static void put_grid(const floating_source *s, int64_t grid, double length,
                      ritz_dense *C)
 {
@@ -159,7 +160,8 @@ static bool port_has(const ritz_port_map *port, int64_t grid)
     return false;
 }
 
-/* All of the ports that hold a grid. @return rows; C {0}: they are counted */
+/* Append to C the motion of all ports that contain a grid. @return number of rows
+   of C; if C is {0}, the rows are only counted */
 static int64_t put_ports(const floating_source *s, int64_t grid, double length,
                          ritz_dense *C)
 {
@@ -181,8 +183,9 @@ static int64_t put_ports(const floating_source *s, int64_t grid, double length,
 }
 
 /*
- * C, the motion of the node of the frame; with @p ports also that of the ports
- * that it is in: if these move as rigid bodies, they turn as the node does.
+ * C, the motion of the node of the frame. If @p ports, the motion of the ports
+ * that contain the node is appended: if such a port moves as a rigid body, its
+ * rotation is that of the node.
  */
 static ritz_status find_held(const floating_source *s, int64_t grid,
                              double length, bool ports, ritz_dense *C)
@@ -196,7 +199,8 @@ static ritz_status find_held(const floating_source *s, int64_t grid,
     return RITZ_OK;
 }
 
-/* C (V - Z w) must vanish: to rounding of T V, or to digits of positions. */
+/* Refuse if `rest`, C (V - Z w), is larger than the rounding of T V and than the
+   error of positions that have few digits. */
 static ritz_status demand_held(const floating_source *s, int64_t grid,
                                const ritz_dense *CV, const ritz_dense *rest,
                                const ritz_dense *V)
@@ -215,7 +219,8 @@ static ritz_status demand_held(const floating_source *s, int64_t grid,
     return RITZ_OK;
 }
 
-/* w of C Z w = C V */
+/* Tangent frame: W = N w with C Z w = C V. The node alone is tried first, then the
+   node with its ports. */
 static ritz_status find_tangent(const floating_source *s,
                                 const rigid_motions *rigid, int64_t grid,
                                 const ritz_dense *V, ritz_dense *w)
@@ -244,7 +249,6 @@ static ritz_status find_tangent(const floating_source *s,
     return demand_held(s, grid, &CV, &rest, V);
 }
 
-/* W and U. */
 ritz_status ritz_floating_refer(const floating_source *s, ritz_floating *f)
 {
     RITZ_OWN(rigid_motions) rigid = {0};

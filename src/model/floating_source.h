@@ -1,4 +1,4 @@
-/* What a floating body is made from, and its reference condition. */
+/* The data from which a floating body is made, for the files that make it. */
 #ifndef RITZ_MODEL_FLOATING_SOURCE_H
 #define RITZ_MODEL_FLOATING_SOURCE_H
 
@@ -17,14 +17,15 @@ typedef struct floating_source {
 } floating_source;
 
 /**
- * W and U of a body whose V, frame and reference are there.
+ * Compute W and U from V, the frame and the reference condition of @p f.
  *
- * @return RITZ_ERR_ARGUMENT as ritz_floating_of says of references
+ * @return RITZ_ERR_ARGUMENT if the body does not allow this reference condition:
+ *         see ritz_floating_of
  */
 ritz_status ritz_floating_refer(const floating_source *s, ritz_floating *f);
 
-/** Column 3 + i of N, 6 x 6: R N has the rotations about @p c, in place of those
- * about the basic origin, times @p scale. */
+/** Set column 3 + i of N, 6 x 6, so that this column of R N is @p scale times the
+ * rotation about the point @p c along axis i. */
 void ritz_floating_spin(const double *c, int i, double scale, ritz_dense *N);
 
 #endif

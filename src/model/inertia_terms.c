@@ -8,7 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-/* What both sets of terms are made of, about their origin. */
+/* The integrals that the terms of MBDyn and of SID consist of, about the origin
+   of the frame. */
 typedef struct moments {
     int64_t m;
     double mass, first[3], second[9]; /* int 1, int x, int x~ x~' */
@@ -29,7 +30,7 @@ static double product_of(const moments *of, int a, int64_t j, int b, int64_t k)
     return ritz_dense_col(of->P, b * of->m + k)[a * of->m + j];
 }
 
-/* (u x v)_a from the matrix of products u_b v_c. */
+/* (u x v)_a, where P_bc = u_b v_c. */
 static double turn_of(const double P[3][3], int a)
 {
     return P[(a + 1) % 3][(a + 2) % 3] - P[(a + 2) % 3][(a + 1) % 3];
@@ -105,8 +106,10 @@ static void find_momenta(const double *o, moments *of)
 }
 
 /*
- * With X_ab = int x_a u_b about o, N = tr(X) I - (X + X') / 2 - h~ / 2: the
- * last two are -u x' where the antisymmetric part of X belongs to h.
+ * N = int (x . u) I - u x' = tr(X) I - X' with X_ab = int x_a u_b about o. The
+ * antisymmetric part of X' is taken from h (see the header), which gives
+ *
+ *     N = tr(X) I - (X + X') / 2 - h~ / 2
  */
 static void find_first_order(const ritz_dense *position, const double *o,
                              moments *of)
@@ -243,7 +246,7 @@ static ritz_status new_sid(int64_t m, ritz_sid_terms *t)
     return new_taylor(m, 6, m, &t->Oe);
 }
 
-/* What does not depend on a mode, and what depends on one. */
+/* Terms of no mode and of one mode. */
 static void put_sid_modes(const moments *of, ritz_sid_terms *t)
 {
     for (int a = 0; a < 3; a++)
@@ -272,7 +275,7 @@ static void put_sid_modes(const moments *of, ritz_sid_terms *t)
     }
 }
 
-/* Terms of q_k and of row, or block, l. */
+/* Terms of two modes: the coefficient of q_k in row or block l. */
 static void put_sid_pair(const moments *of, int64_t k, int64_t l,
                          ritz_sid_terms *t)
 {
@@ -328,7 +331,7 @@ void ritz_sid_terms_free(ritz_sid_terms *terms)
     *terms = (ritz_sid_terms){0};
 }
 
-/* ---- what is not in them ------------------------------------------------ */
+/* ---- lost kinetic energy ------------------------------------------------ */
 
 /* M - sum_a P_aa */
 static ritz_status find_missing(const ritz_invariants *of, const ritz_dense *M,

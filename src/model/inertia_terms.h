@@ -1,24 +1,26 @@
 /*
- * Terms of inertia that simulators need of a body that deforms in a moving
- * frame, from the inertia invariants of its modes.
+ * Inertia terms that simulators need for a body that deforms in a moving frame.
+ * They are made from the inertia invariants of its modes.
  *
- * A point x of the body, from the origin of the frame, moves by u = sum_k u_k
- * q_k. With v~ w = v x w, indices j, k, l of m modes, a, b of axes, and all
- * integrals over the mass of the body,
+ * A point of the body at x, from the origin of the frame, moves by u = sum_k u_k
+ * q_k. Let v~ w = v x w, let j, k, l number the m modes and a, b the axes, and
+ * let integrals be over the mass of the body:
  *
  *     S_k  = int u_k                h_k  = int x x u_k
  *     c_jk = int u_j x u_k          P_jk = int u_j u_k'
  *     N_k  = int x~ u_k~'    = int (x . u_k) I - u_k x'
  *     N_jk = int u_j~ u_k~'  = tr(P_jk) I - P_jk'
  *
- * All of M is in S_k, h_k, the mass and the inertia. N_k is as exact as the
- * products of the invariants (see ritz_invariants), but its antisymmetric part
- * is that of h_k, since equations of motion keep momentum by it:
+ * Mass, inertia, S_k and h_k follow from all of M and are exact. c_jk, P_jk and
+ * N_k are as exact as `position` and `product` of ritz_invariants, except that
+ * the antisymmetric part of N_k is computed from h_k,
  *
- *     N_k - N_k' = -h_k~
+ *     N_k - N_k' = -h_k~,
  *
- * Matrices are dense, column-major. A column with two or three indices is
- * counted as written: column 3 (j m + k) + b has the last index fastest.
+ * because the equations of motion conserve momentum only if this holds.
+ *
+ * Matrices are column-major. In a column number such as 3 (j m + k) + b the last
+ * index, b, runs fastest.
  */
 #ifndef RITZ_MODEL_INERTIA_TERMS_H
 #define RITZ_MODEL_INERTIA_TERMS_H
@@ -26,9 +28,10 @@
 #include <ritz/model.h>
 
 /*
- * MBDyn's invariants [MBDynTecman2023, Invariants]. What it sums over the
- * rotations V of nodes with inertia J_i is in I4, I6, I7 and I8: a node's mass
- * moves by u + V x r. So I10 and I11, which are of V and J_i alone, are zero.
+ * MBDyn's invariants [MBDynTecman2023, Invariants]. MBDyn adds terms of the nodes'
+ * inertia J_i and rotations V to them; here the integrals over mass that moves by
+ * u + V x r already contain these terms, in I4, I6, I7 and I8. Therefore I10 and
+ * I11, which consist of V and J_i alone, are zero.
  */
 typedef struct ritz_mbdyn_terms {
     double I1;     /* mass */
@@ -110,8 +113,9 @@ ritz_status ritz_sid_terms_of(const ritz_invariants *invariants,
 void ritz_sid_terms_free(ritz_sid_terms *terms);
 
 /*
- * The part of the kinetic energy of modes that the products of invariants do not
- * hold. With P_aa the three blocks (a m + j, a m + k) of `product`,
+ * The largest part of the kinetic energy of a mode that is missing in the
+ * products of invariants. With P_aa the blocks (a m + j, a m + k) of
+ * `product`, a = 1 to 3,
  *
  *     loss = max_phi |phi'(M - sum_a P_aa) phi| / phi'M phi
  *
@@ -119,7 +123,7 @@ void ritz_sid_terms_free(ritz_sid_terms *terms);
  */
 typedef struct ritz_inertia_loss {
     double value; /* 0 if there is no mode */
-    int64_t mode; /* where, from 0 in the order of eigenvalues */
+    int64_t mode; /* number of that mode, from 0 in the order of eigenvalues */
 } ritz_inertia_loss;
 
 /**

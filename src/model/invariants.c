@@ -1,15 +1,18 @@
 /*
- * Inertia invariants of moving bodies. Mass dm at grid i moves by v = u_i +
- * theta_i x r, at x = x_i + r, with integrals of 1, r and r r' from the blocks
- * of M (invariants_mass.h). With p_b the momentum at grids along axis b, and
- * h_db its moment along d,
+ * Inertia invariants of moving bodies. A mass dm that belongs to grid i is at
+ * x = x_i + r_i and moves by v = u_i + theta_i x r_i. The blocks of M give the
+ * integrals of 1, r and r r' over the mass (invariants_mass.h). For axes a, b, d
+ * let p_b(i) be the momentum along b of the mass of grid i, and h_db(i) its first
+ * moment along d,
  *
  *     p_b(i)  = sum_j int v_jb           h_db(i) = sum_j int r_id v_jb
+ *
+ * Then
  *
  *     int x_a v_b = sum_i x_ia p_b(i) + h_ab(i)
  *     int v_a v_b = sum_i u_ia p_b(i) + (theta_i x h_b(i))_a
  *
- * and what consistent beams have in addition (invariants_beams.h).
+ * Terms of consistent beams that these lack are added (invariants_beams.h).
  */
 #include "base/alloc.h"
 #include "base/team.h"
@@ -59,12 +62,12 @@ static void motion_free(motion *of)
         ritz_dense_free(&of->theta[a]);
 }
 
-/* What moves along axis b. */
+/* Motion and momentum along axis b. */
 typedef struct along {
     int b;
-    ritz_dense u, p; /* nodes x r */
-    ritz_dense h[3]; /* turning nodes x r */
-    ritz_dense S, CS;
+    ritz_dense u, p;  /* nodes x r */
+    ritz_dense h[3];  /* turning nodes x r */
+    ritz_dense S, CS; /* of beams: see invariants_beams.h */
 } along;
 
 static void along_free(along *of)
@@ -135,7 +138,7 @@ static ritz_status find_along(const motion *of, int b, along *out)
     return ritz_beams_weigh(&mass->beams, &out->S, &out->CS);
 }
 
-/* X_a' m T_b of all a. */
+/* int x_a v_b for a = 1 to 3. */
 static ritz_status find_positions(const motion *of, const along *v,
                                   ritz_dense *out)
 {
@@ -166,7 +169,7 @@ static ritz_status add_product(double factor, const ritz_dense *L,
     return RITZ_OK;
 }
 
-/* T_a' m T_b */
+/* int v_a v_b */
 static ritz_status find_product(const motion *of, int a, const along *v,
                                 ritz_dense *out)
 {
@@ -188,7 +191,7 @@ static ritz_status find_product(const motion *of, int a, const along *v,
                : add_product(1.0, own ? &v->S : &S, &v->CS, out);
 }
 
-/* X_a' m T_b, and T_a' m T_b of all a <= b, for one b. */
+/* int x_a v_b for all a, and int v_a v_b for a <= b, of one b. */
 static ritz_status find_products(const motion *of, int b, ritz_invariants *out)
 {
     const int64_t r = of->T->ncol;
@@ -245,7 +248,7 @@ ritz_status ritz_invariants_project(const ritz_invariants *invariants,
     if (!invariants->momentum.val)
         return RITZ_OK;
     memcpy(second.rigid, invariants->rigid, sizeof second.rigid);
-    /* I3 (x) V: T V transforms each of the three blocks of columns by V */
+    /* V transforms each of the three blocks of columns: V3 = I_3 (x) V */
     RITZ_CHECK(ritz_dense_new(3 * V->nrow, 3 * V->ncol, &V3));
     for (int b = 0; b < 3; b++)
         ritz_dense_put(V, b * V->nrow, b * V->ncol, &V3);

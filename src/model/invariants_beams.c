@@ -41,7 +41,7 @@ static int compare_nodes(const void *left, const void *right)
     return 0;
 }
 
-/* Axis and length, and what is known of the nodes. */
+/* Set the axis, the length, and the rows and axes of both nodes. */
 static void lay_out(const ritz_nodes *nodes, const int64_t *row,
                     ritz_beam *beam)
 {
@@ -64,8 +64,9 @@ static void lay_out(const ritz_nodes *nodes, const int64_t *row,
         beam->e[a] /= beam->L;
 }
 
-/* Sort pairs and keep each once, of those that have a length. A node that
-   several cells join to held grids is left out: its block is a sum. */
+/* Sort the pairs, keep each once, and drop those of length 0. A node that
+   several cells join to grids without dofs is dropped too: its own block is the
+   sum of several beams, which cannot be told apart. */
 static void order_pairs(const ritz_nodes *nodes, const int64_t *row,
                         ritz_beams *list)
 {
@@ -92,7 +93,7 @@ static void order_pairs(const ritz_nodes *nodes, const int64_t *row,
     list->count = kept;
 }
 
-/* Note the pair of a line cell if one of its grids has dofs. */
+/* Append the pair of a line cell if at least one of its grids has dofs. */
 static void add_pair(const ritz_nodes *nodes, const int64_t *id,
                      ritz_beams *list)
 {
@@ -164,7 +165,8 @@ void ritz_beams_free(ritz_beams *beams)
 
 enum { ALONG, ACROSS, SLOPE, FUNCTIONS }; /* n, H, K */
 
-/* Integrals over xi, times 420, of functions f_1 and f_2 of both ends. */
+/* integral[f][g][i][j] = 420 int_0^1 f_i g_j dxi, with f and g among n, H, K, of
+   ends i and j. */
 static const double integral[FUNCTIONS][FUNCTIONS][2][2] = {
     [ALONG] = {{{140, 70}, {70, 140}},
                {{147, 63}, {63, 147}},
@@ -184,12 +186,14 @@ static double term(const ritz_beam *beam, int f, int i, int g, int j)
 
 /* ---- whether a pair is a beam ------------------------------------------- */
 
-/* Parts of the block, rotations times L. */
+/* The matrices that a beam's block is a combination of, where rotations are
+   multiplied by L: mu (COUPLING + BENDING), and any multiples of TORSION, e e'
+   of rotations, AXIS, e e' of translations, and EVEN, I of translations. */
 enum { COUPLING, BENDING, TORSION, AXIS, EVEN, PARTS };
 
 /*
- * A part along basic axes, for unit mass, of the rows of node i and the columns
- * of node j; e leads from i to the other node.
+ * One of these matrices, for unit mass and along basic axes, with rows of node i
+ * and columns of node j. `own`: i = j. e points from i to the other node.
  */
 static void fill_part(int part, bool own, const double *e, double B[6][6])
 {
@@ -217,7 +221,8 @@ static void fill_part(int part, bool own, const double *e, double B[6][6])
         }
 }
 
-/* From basic axes to those of nodes i and j, 0 where a dof is absent. */
+/* Transform a block from basic axes to those of nodes i and j; entries of absent
+   dofs are 0. */
 static void turn_block(const ritz_beam *beam, int i, int j,
                        const double B[6][6], double out[36])
 {
@@ -309,8 +314,8 @@ static double scale_of(const ritz_beam *beam, int k)
            (k % 6 < 3 ? 1.0 : 1.0 / beam->L);
 }
 
-/* The mass of the beam whose block i, j this is, and in `axial` its term of s_i
- * with s_j; 0 if it is the block of no beam. */
+/* The mass of a beam from its block of nodes i and j, and in `axial` the term of
+ * s_i with s_j. @return 0 if the block is not that of a beam */
 static double fit_block(const ritz_beam *beam, int i, int j,
                         const double *block, double *axial)
 {
@@ -344,7 +349,8 @@ void ritz_beam_fit(int column, const double block[static 36], ritz_beam *beam)
     beam->known[column] = true;
 }
 
-/* The term of s_i with s_j: half of the mass belongs to each s_j. */
+/* The term of s_i with s_j. Terms of s_1 and of s_2 with s_j add up to half of
+   the mass. */
 static double axial_term(const ritz_beam *beam, int i, int j)
 {
     return i == j ? beam->mu / 2.0 - beam->axial : beam->axial;
@@ -370,7 +376,7 @@ void ritz_beam_take_out(const ritz_beam *beam, int end, double block[36])
                     scale_of(beam, k);
 }
 
-/* ---- what the mean form lacks ------------------------------------------- */
+/* ---- terms that the form of invariants_mass.h lacks ---------------------- */
 
 /* Whether the block i, j of the beam is in M. */
 static bool has_block(const ritz_beam *beam, int i, int j)
@@ -378,8 +384,9 @@ static bool has_block(const ritz_beam *beam, int i, int j)
     return beam->node[i] >= 0 && beam->known[j];
 }
 
-/* The m that the block i, j of the beam alone gives: a third of the trace of
-   `along` e e' + `across` (I - e e') if the nodes are whole. */
+/* The m that invariants_mass.h takes from block i, j of the beam. If both nodes
+   have all translations, it is a third of the trace of
+   along e e' + across (I - e e'). */
 static double mean_term(const ritz_beam *beam, int i, int j)
 {
     const double across = term(beam, ACROSS, i, ACROSS, j);
@@ -402,12 +409,13 @@ static double mean_term(const ritz_beam *beam, int i, int j)
 }
 
 /*
- * C of one beam, in the order of the rows of S. Of the integrals of
+ * C of one beam, in the order of the rows of S. The exact integral is that of
  *
  *     (e n_i s_i + H_i l_i + L K_i t_i)_a (e n_j s_j + H_j l_j + L K_j t_j)_b
  *
- * the mean form has m (s_i + l_i)_a (s_j + l_j)_b, the terms of l and s with t
- * as those of l with t, and t with t.
+ * invariants_mass.h has m (s_i + l_i)_a (s_j + l_j)_b in place of the terms of s
+ * and l, uses the term of l with t for that of s with t, and has the right term
+ * of t with t. C is the difference.
  */
 static void fill_weights(const ritz_beam *beam, double C[6][6])
 {
@@ -429,7 +437,7 @@ static void fill_weights(const ritz_beam *beam, double C[6][6])
         }
 }
 
-/* Factors of the six dofs of node i in e_a s_i, l_ia and t_ia. */
+/* Coefficients of the six dofs of node i in e_a s_i, l_ia and t_ia. */
 static void fill_factors(const ritz_beam *beam, int i, int a, double out[3][6])
 {
     const double *e = beam->e;
@@ -523,9 +531,10 @@ ritz_status ritz_beams_weigh(const ritz_beams *beams, const ritz_dense *S,
 }
 
 /*
- * The place of a point of the beam is its motion with u_i = x_i and t_i = 0,
- * so that C is applied to that. The mean form adds to x_i the arms of t_i, here
- * e_a L K_i, whose integrals with the motion are taken out again.
+ * The position of a point of the beam is its motion if u_i = x_i and t_i = 0, so
+ * `at` holds the rows of S for that motion, to be multiplied by C S.
+ * invariants_mass.h also multiplies the arms of t_i, here e_a L K_i, with the
+ * motion: `arm` subtracts these integrals.
  */
 static void fill_places(const ritz_beam *beam, const ritz_nodes *nodes, int a,
                         double *at, double *arm)

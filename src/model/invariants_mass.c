@@ -8,7 +8,8 @@
 
 /* ---- nodes -------------------------------------------------------------- */
 
-/* Rows of all grids, six each, of nodes that have one: `row` is theirs. */
+/* List the grids that have a dof as nodes. `row` gets six rows of each node, -1
+   where it lacks a dof. */
 static ritz_status list_nodes(const ritz_component *component,
                               ritz_nodes *nodes, int64_t **row)
 {
@@ -45,7 +46,7 @@ static ritz_status list_nodes(const ritz_component *component,
     return RITZ_OK;
 }
 
-/* Nodes with arms as nodes of their own, whose rows are those of rotations. */
+/* List the nodes with arms once more, with the rows of their rotations. */
 static ritz_status list_turning(const int64_t *row, ritz_nodal_mass *mass)
 {
     const ritz_nodes *nodes = &mass->nodes;
@@ -103,8 +104,10 @@ static ritz_status place_dofs(int64_t num_dofs, columns *c)
     return RITZ_OK;
 }
 
-/* Nodes of column j of m, from entry `first` on, in no order; the end of the
-   column. With `rowind`, they are listed there and their blocks summed. */
+/* Find the nodes i whose blocks M_ij are not zero, in no order. They are the
+   entries of column j of m, which begins at entry `first`. If `rowind` is given,
+   they are stored there and their blocks in c->block. @return where the column
+   ends */
 static int64_t take_column(columns *c, int64_t j, int64_t first,
                            int64_t *rowind)
 {
@@ -132,7 +135,7 @@ static int64_t take_column(columns *c, int64_t j, int64_t first,
     return end;
 }
 
-/* Whether entries of rotations are there. */
+/* Whether a block has entries of rotations. */
 static bool has_rotations(const double *block)
 {
     for (int p = 0; p < 6; p++)
@@ -142,7 +145,7 @@ static bool has_rotations(const double *block)
     return false;
 }
 
-/* From the axes of nodes i and j to the basic ones. */
+/* Transform a block from the axes of nodes i and j to basic axes. */
 static void turn_to_basic(const double *axes_i, const double *axes_j,
                           const double *block, double out[6][6])
 {
@@ -156,7 +159,8 @@ static void turn_to_basic(const double *axes_i, const double *axes_j,
                         axes_j[3 * (q % 3) + b];
 }
 
-/* sum_pq M_ip,jq (a_ip . a_jq) / sum_pq (a_ip . a_jq)^2 over translations. */
+/* m = sum_pq M_ip,jq (a_ip . a_jq) / sum_pq (a_ip . a_jq)^2 over the
+   translations p of node i and q of node j, with axes a. */
 static double mean_of(const columns *c, int64_t i, int64_t j,
                       const double *block)
 {
@@ -176,9 +180,9 @@ static double mean_of(const columns *c, int64_t i, int64_t j,
 }
 
 /*
- * How often component d of f occurs in the block of translations p of one node
- * and rotations q of the other, sum_pq ((a_p x b_q)_d)^2: twice if they are
- * whole.
+ * The weight of component d of f in the block of the translations p of one node,
+ * with axes a, and the rotations q of the other, with axes b:
+ * sum_pq ((a_p x b_q)_d)^2. It is 2 if both nodes have all these dofs.
  */
 static double count_turns(const double *a, const int64_t *moves,
                           const double *b, const int64_t *turns, int d)
@@ -248,8 +252,8 @@ static ritz_status add_arm(const columns *c, int64_t i, int64_t j,
     return RITZ_OK;
 }
 
-/* Whether the pair of nodes i and j is a beam, whose end at j is then taken out
-   of `own`, the block of j alone. */
+/* If nodes i and j are the ends of a beam, subtract its part from `own`, the
+   block M_jj. */
 static void fit_beam(const ritz_beams *beams, int64_t i, int64_t j,
                      const double *block, double *own)
 {
@@ -263,7 +267,8 @@ static void fit_beam(const ritz_beams *beams, int64_t i, int64_t j,
         ritz_beam_take_out(beam, column, own);
 }
 
-/* What column j of m, with its entries from `first` to `end`, holds. */
+/* Read m, arms and beams from the blocks of column j of m, which begins at entry
+   `first`. */
 static ritz_status read_column(const columns *c, int64_t j, int64_t first,
                                ritz_sparse *m, ritz_nodal_mass *mass)
 {
