@@ -4,13 +4,16 @@
  *
  *     exp([A B/s; 0 0] h) = [E G/s; 0 I],
  *
- * s for each input, lest large units cost doublings. F = exp(X) - I is summed
- * as a Taylor polynomial of degree 16 of X / 2^k, whose norm is at most 1/2, so
- * that its remainder is below 1e-17 of it; powers are grouped by four
- * [PatersonStockmeyer1973]. It is doubled by F := 2 F + F^2, which keeps the
- * digits of motions that hardly change in a step. Rows and columns are balanced
- * by powers of two first [ParlettReinsch1969], as displacements and velocities
- * have different units.
+ * Each input is divided by a scale s of its own, because an input of large unit
+ * would increase the norm and thereby the number of doublings below.
+ *
+ * F = exp(X) - I is computed for X / 2^k, whose norm is at most 1/2, as a
+ * Taylor polynomial of degree 16: the remainder is below 1e-17 of F. Powers are
+ * grouped by four [PatersonStockmeyer1973]. Then F := 2 F + F^2 is applied k
+ * times. Working with F instead of exp(X) keeps the digits of motions that
+ * hardly change in a step. Rows and columns are first balanced by powers of two
+ * [ParlettReinsch1969], because displacements and velocities have different
+ * units.
  */
 #include "propagate.h"
 
@@ -20,7 +23,8 @@
 
 enum { GROUP = 4, DEGREE = 16, SWEEPS = 100, DOUBLINGS = 1100 };
 
-/* Powers of two that make rows and columns alike. */
+/* Find powers of two by which row i and column i of A get nearly the same sum,
+   for all i. */
 static void balance(size_t k, const double *A, double *scale)
 {
     bool again = true;

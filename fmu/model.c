@@ -54,8 +54,8 @@ static uint64_t word_at(const unsigned char *at)
     return word;
 }
 
-/* The whole file; NULL: it cannot be read, as a folder, which opens and has a
- * length of 2^63 - 1. */
+/* The whole file; NULL if it cannot be read. A byte is read first because a
+ * folder can be opened and has a length of 2^63 - 1, but no byte. */
 static unsigned char *read_bytes(FILE *file, size_t *size)
 {
     unsigned char *bytes = NULL;
@@ -76,7 +76,7 @@ static unsigned char *read_bytes(FILE *file, size_t *size)
     return bytes;
 }
 
-/* Sizes that the head states, held to the size of the file. */
+/* Read the counts of the head; refuse counts for which the file is too short. */
 static bool read_counts(const unsigned char *bytes, size_t size, fmu_model *m,
                         char why[FMU_MESSAGE_SIZE])
 {

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: 0BSD */
 /*
- * An oscillator q'' + d q' + lambda q = f over a step h in which f is held. S
- * is the divided difference of exp(s h) over the roots of s^2 + d s + lambda,
- * P its integral, rate its derivative and hold = rate + d S. From the equation
- * itself hold = 1 - lambda P.
+ * A step h of an oscillator q'' + d q' + lambda q = f under a constant f. S is
+ * the divided difference of exp(s h) over the roots s of s^2 + d s + lambda, P
+ * its integral, rate its derivative, and hold = rate + d S. The differential
+ * equation gives hold = 1 - lambda P.
  *
- * While the roots are small a power series needs no root. Complex roots give
- * sine and cosine, real ones a recursion that divides by the larger root, as
- * the smaller one may be 0 and both may be equal.
+ * If h times the roots is small, a power series is summed. Otherwise complex
+ * roots give sine and cosine. Real roots give formulas that divide by the root
+ * of larger size alone, because the other may be 0, and that remain accurate if
+ * both are equal.
  */
 #include "propagate.h"
 

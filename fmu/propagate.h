@@ -20,8 +20,8 @@ typedef struct fmu_step {
     uint64_t used;   /* when it was, by a count */
 } fmu_step;
 
-/* Step sizes differ in their last digits, as each is the difference of two
-   times: the last few are kept. */
+/* Importers subtract two times to get a step size, so that equal steps differ
+   in their last digits. The matrices of a few step sizes are kept. */
 enum { FMU_STEPS = 4 };
 
 typedef struct fmu_steps {
@@ -40,7 +40,8 @@ bool fmu_propagate(const fmu_model *model, fmu_steps *steps, double h,
 void fmu_steps_free(fmu_steps *steps);
 
 /*
- * Of one oscillator, with S the response of q to a unit velocity:
+ * A step of one oscillator under a constant force f, with S the response of q
+ * to a unit velocity:
  *
  *     q_1 = hold q_0 + S v_0 + P f,   v_1 = -lambda S q_0 + rate v_0 + S f
  */

@@ -51,19 +51,19 @@ typedef struct ritz_inertia {
 } ritz_inertia;
 
 /*
- * Inertia of the body in a moving frame, as far as M_r does not hold it. R
- * (n x 6) holds unit rigid motions about the basic origin. A point of mass dm at
- * x moves by v_k in column k of T; x_a and v_ka are components along basic axis
+ * Inertia of the body in a moving frame, as far as M_r does not hold it. R is
+ * n x 6, unit rigid motions about the basic origin. A point of mass dm at x
+ * moves by v_k in column k of T; x_a and v_ka are components along basic axis
  * a.
  *
  * `rigid` and `momentum` follow from all of M. The integrals `position` and
  * `product` are exact for isoparametric solids, lumped mass, rigid bodies at
- * grids (such as offset mass), straight beams with consistent mass (linear along
- * the axis, cubic across), and all of these where grids follow others rigidly:
- * M, the positions of grids and the line cells determine them. Other elements,
- * such as tapered or offset beams, are approximated by the nearest of these.
- * Then sum_a int v_ja v_ka is not M_r, and ritz-export states the kinetic energy
- * that is lost.
+ * grids (such as offset mass), straight beams with consistent mass (linear
+ * along the axis, cubic across), and all of these where grids follow others
+ * rigidly: M, the positions of grids and the line cells determine them. Other
+ * elements, such as tapered or offset beams, are approximated by the nearest of
+ * these. Then sum_a int v_ja v_ka is not M_r, and ritz-export states the
+ * kinetic energy that is lost.
  */
 typedef struct ritz_invariants {
     double rigid[36];    /* R'MR, symmetric */
@@ -114,8 +114,8 @@ typedef struct ritz_reduced {
 } ritz_reduced;
 
 /**
- * Project a component on a basis: K_r = T'KT, likewise the other matrices, ports,
- * inputs and outputs.
+ * Project a component on a basis: K_r = T'KT, likewise the other matrices,
+ * ports, inputs and outputs.
  *
  * Columns of kind massless have no mass, no damping and no part in the
  * invariants: their rows and columns of M and D are zero.
@@ -181,8 +181,8 @@ ritz_status ritz_invariants_of(const ritz_component *component,
 ritz_status ritz_invariants_project(const ritz_invariants *invariants,
                                     const ritz_dense *V, ritz_invariants *out);
 
-/** Set the cause of the measure that was added last: why this bound is far above
- * the known error. */
+/** Set the cause of the measure that was added last: why this bound is far
+ * above the known error. */
 void ritz_measures_name_cause(ritz_measures *measures, const char *cause);
 
 /** Append a measure; @p where may be NULL. */

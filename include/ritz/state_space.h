@@ -20,8 +20,8 @@
    dense state space has at most twice as many states. */
 enum { RITZ_STATE_DOFS = 1500 };
 
-/* An imported state space with more states than this is kept sparse if at most a
-   tenth of the entries of A and E are not zero. */
+/* An imported state space with more states than this is kept sparse if at most
+   a tenth of the entries of A and E are not zero. */
 enum { RITZ_SPARSE_STATES = 600 };
 
 typedef struct ritz_state_space {

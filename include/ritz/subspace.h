@@ -79,8 +79,8 @@ typedef struct ritz_basis {
 /** @p r columns of kind normal, with neither dof nor hertz nor residual. */
 ritz_status ritz_columns_new(int64_t r, ritz_columns *out);
 
-/** Columns at[0], at[1], ... of @p columns; @p at NULL: the first @p count. What
- * @p out held is freed. */
+/** Columns at[0], at[1], ... of @p columns; @p at NULL: the first @p count.
+ * What @p out held is freed. */
 ritz_status ritz_columns_pick(const ritz_columns *columns, int64_t count,
                               const int64_t *at, ritz_columns *out);
 

@@ -75,8 +75,8 @@ void ritz_configuration_name(int64_t count, const char *sweep, size_t stride,
                              const double *setting, char out[RITZ_NAME_SIZE]);
 
 /**
- * Add the dampers, as they are now, to K and D: see ritz_dampers_install. lambda
- * does not change.
+ * Add the dampers, as they are now, to K and D: see ritz_dampers_install.
+ * lambda does not change.
  */
 ritz_status ritz_configuration_install(ritz_configuration *configuration);
 

@@ -43,7 +43,8 @@ void ritz_text_clean(char *text);
 /** The folder of a path: "." if it names none. The caller frees @p out. */
 ritz_status ritz_path_folder(const char *path, char **out);
 
-/** "rotor.h5" of "build/rotor.h5", a part of @p path. */
+/** The name of the file in @p path, such as "rotor.h5" in "build/rotor.h5"; it
+ * points into @p path. */
 const char *ritz_path_name(const char *path);
 
 /** Whether a file lies in a folder or below it, with symbolic links resolved;

@@ -53,9 +53,9 @@
    mechanism. */
 #define RITZ_NULL_VECTOR_SHARE 1e-6
 
-/* Stress rows cancel for rigid motion. Of those that came with seven digits,
-   as OUTPUT4 of single precision has them, a row of a thousand terms leaves a
-   few 1e-6 of the sum of their sizes. */
+/* In a row of stresses the terms of a rigid motion cancel. If the terms have
+   seven digits, as in OUTPUT4 of single precision, a row of a thousand of them
+   leaves a few 1e-6 of the sum of their absolute values. */
 #define RITZ_RIGID_ROW 1e-5
 
 /* Assembly */
@@ -152,9 +152,10 @@
    rounding; sound models have -3e-9, measured. */
 #define RITZ_NEGATIVE_STIFFNESS 1e-6
 
-/* A state's nominal value, of its largest response to a unit step: an integrator
-   whose local error is relative to it adds up some hundred times that error,
-   measured on accelerations of a rotor. */
+/* Nominal value of a state, relative to its largest response to a unit step.
+   Integrators bound the local error relative to the nominal value, and local
+   errors add up to some hundred times one of them: measured on accelerations of
+   a rotor. */
 #define RITZ_NOMINAL_SHARE 0x1p-8
 
 /* Comparison of models */
@@ -288,13 +289,13 @@
 /* Convergence of ARPACK: eigenvalues err by its square. */
 #define RITZ_ARNOLDI_SETTLED 1e-12
 /* Rounding of x'K x, relative to lambda, above which pairs are computed again
-   with sums of twice the digits. Rounding below this leaves errors of up to half
-   of it, with any shift:
-   residuals |lambda K^-1 M x - x| / |x| of 1e-10 are promised, and a response at
-   a relative distance d of w^2 from a mode has the error of the eigenvalue
-   divided by d. A free bar of 700 elements, with rounding of 4.4e-11, had errors
-   of 2e-12 or 1.5e-11, depending on the shift, and of 2e-10 in a response with d
-   = 0.07. The first mode of a solid of 163,000 dofs has less than this. */
+   with sums of twice the digits. Rounding below this leaves errors of up to
+   half of it, with any shift: residuals |lambda K^-1 M x - x| / |x| of 1e-10
+   are promised, and a response at a relative distance d of w^2 from a mode has
+   the error of the eigenvalue divided by d. A free bar of 700 elements, with
+   rounding of 4.4e-11, had errors of 2e-12 or 1.5e-11, depending on the shift,
+   and of 2e-10 in a response with d = 0.07. The first mode of a solid of
+   163,000 dofs has less than this. */
 #define RITZ_DIGITS_FEW 2e-11
 /* Relative residual at which Krylov-Schur and block Lanczos of engine slepc
    have converged. Vectors become more accurate by one inverse iteration. */
@@ -303,11 +304,11 @@
    this part of theta |x|, norms by M. The vectors returned are more accurate,
    by one inverse iteration. */
 #define RITZ_LANCZOS_SETTLED 1e-10
-/* Rounding of eigenvalues that a count of ritz-fit compares, in multiples of eps
-   lambda_max: some hundred sums of terms of that size. */
+/* Rounding of eigenvalues that a count of ritz-fit compares, in multiples of
+   eps lambda_max: some hundred sums of terms of that size. */
 #define RITZ_SCREEN_ROUNDING 1e2
-/* The k-th largest eigenvalue of a band matrix is found within this, relative, to
-   have its eigenvector: neighbours are some 1 / k apart. */
+/* The k-th largest eigenvalue of a band matrix is found within this, relative,
+   to have its eigenvector: neighbours are some 1 / k apart. */
 #define RITZ_KTH_WITHIN 1e-7
 /* The same as RITZ_LANCZOS_SETTLED if eigenvalues are requested to a relative
    accuracy: this part of its
@@ -316,8 +317,8 @@
    only the last pairs have residuals as large as this. For 500 modes of a solid
    and an accuracy of 1e-4 the bound was a twentieth of it. */
 #define RITZ_ACCURACY_SETTLED 0.5
-/* If the bound exceeds the accuracy requested, the search is repeated, and pairs
-   have converged at this part of the former residual. */
+/* If the bound exceeds the accuracy requested, the search is repeated, and
+   pairs have converged at this part of the former residual. */
 #define RITZ_ACCURACY_FINER 1e-2
 /* The range of accuracies that can be requested. Bounds of errors have rounding
    errors of some 1e-12, which are then far below the accuracy. Eigenvalues with
@@ -498,9 +499,10 @@
    than this part of its length; a combination of vectors of one block is
    nothing if its energy is less than this part of theirs. */
 #define RITZ_PROJECTION_DEPENDENT 1e-12
-/* As soon as the residual of ADI is below this multiple of the tolerance, engine
-   projection also solves the equation in the span of ADI's columns: the residual
-   of that solution was from twice to some thousand times smaller (measured). */
+/* As soon as the residual of ADI is below this multiple of the tolerance,
+   engine projection also solves the equation in the span of ADI's columns: the
+   residual of that solution was from twice to some thousand times smaller
+   (measured). */
 #define RITZ_GALERKIN_LEAD 1e4
 /* A load without its rigid motion below this part, squared, is rounding: there
    is nothing flexible to iterate on. */
@@ -730,22 +732,27 @@
    what matrices of six digits do to a rigid mode (1e-5, a judgement) and the
    order of 1 of a loose part. */
 #define RITZ_LOOSE_IN_FRAME 1e-3
-/* Part of the first flexible frequency above which a rigid motion is held by
-   the ground: matrices of six digits leave 1e-3 (their square root). */
+/* Frequency of a rigid motion, relative to the first flexible one, above which
+   the ground is taken to hold the body: rounding of matrices of six digits
+   leaves 1e-3, the square root of 1e-6. */
 #define RITZ_HELD 1e-2
 /* Participation of a mode in translation or rotation, relative to that of the
-   whole body, below which it is none: its square is a mass of 1e-12. */
+   whole body, below which it counts as zero: the effective mass is its square,
+   1e-12 of the body's. */
 #define RITZ_NO_PARTICIPATION 1e-6
-/* Cosine between the participations of a mode in translation and in rotation up
-   to which a mass on a spring stands for it. */
+/* Largest cosine between the participation vectors of a mode in translation and
+   in rotation at which they count as perpendicular, so that a mass on a spring
+   can represent the mode. */
 #define RITZ_SKEW_PARTICIPATION 1e-6
-/* A block of M is that of a beam if it differs by no more than this part of its
-   terms of translations with rotations: above what single precision leaves of
-   them. Directions that two grids share are told apart by the same. */
+/* A block of M is taken for that of a beam if it differs from it by at most
+   this part of its terms of translations with rotations; single precision makes
+   a smaller difference. The same bound decides whether two grids share a
+   direction along the beam. */
 #define RITZ_BEAM_FITS 1e-6
-/* Eigenvalues of the products of fields, each of size 1, below this are
-   rounding of sums over grids, and of rigid motion that was taken out. An
-   invariant without them errs by at most this part of its fields' sizes. */
+/* Eigenvalues below this of the matrix of products of displacement fields,
+   which are scaled to size 1, are rounding: of sums over grids, and of rigid
+   motion that was removed. An invariant without them has at most this error,
+   relative to the size of its fields. */
 #define RITZ_INVARIANT_ROUNDING 1e-13
 /* A loss of kinetic energy above this is reported: rounding of modes that 98
    columns make is 3e-9, measured. */
@@ -819,8 +826,8 @@
 /*
  * A bound holds in exact arithmetic. Solving Lyapunov equations and projecting
  * moves the response by some n eps |G|: an error may exceed its bound by this
- * many times that. The factor is a choice: no error of tests/claims/states.claims
- * is so close to its bound that it matters.
+ * many times that. The factor is a choice: no error of
+ * tests/claims/states.claims is so close to its bound that it matters.
  */
 #define RITZ_BOUND_ROUNDING 1e3
 /* Next to a slow pole, rounding also moves the response by the first-order
@@ -868,10 +875,10 @@
 /* Shifts rho of counts, as multiples of the highest eigenvalue in the band. The
    first count lies between NEAR and OFF, or between NEAR and FAR if no gap of
    the reduced spectrum is found there; a count for responses lies between FAR
-   and FARTHEST. A smaller rho makes bounds loose. Below a larger one the reduced
-   model has fewer modes than the full one, and finding the missing ones takes
-   further counts: models S10 and P50 of the benchmarks take 4 and 3 counts with
-   rho up to OFF, 7 and 5 with rho up to FAR. */
+   and FARTHEST. A smaller rho makes bounds loose. Below a larger one the
+   reduced model has fewer modes than the full one, and finding the missing ones
+   takes further counts: models S10 and P50 of the benchmarks take 4 and 3
+   counts with rho up to OFF, 7 and 5 with rho up to FAR. */
 #define RITZ_COUNT_NEAR     2.0
 #define RITZ_COUNT_OFF      3.0
 #define RITZ_COUNT_FAR      8.0

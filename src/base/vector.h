@@ -9,7 +9,7 @@ static inline double ritz_dot(const double a[static 3],
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/** out = a x b; @p out is neither of them. */
+/** out = a x b; @p out must not be @p a or @p b. */
 static inline void ritz_cross(const double a[static 3],
                               const double b[static 3], double out[static 3])
 {

@@ -11,10 +11,10 @@
  * The unknown forces at the ports act on b alone and do not appear.
  *
  * If i can move rigidly while b is at rest, by R = [0; R_i], then K_ii is
- * singular. G is then the elastic response of a free body (bases/elastic.h): the
- * loads are brought into equilibrium by inertia forces of R, and the response is
- * M-orthogonal to R. The missing rigid part does not matter to rows with
- * S R = 0, and other rows are refused.
+ * singular. G is then the elastic response of a free body (bases/elastic.h):
+ * the loads are brought into equilibrium by inertia forces of R, and the
+ * response is M-orthogonal to R. The missing rigid part does not matter to rows
+ * with S R = 0, and other rows are refused.
  *
  * Tests compare it with static and harmonic responses of the full model, and
  * with the exact solution where T is square.
@@ -83,7 +83,7 @@ static ritz_status respond(const statics *s, ritz_dense *X)
     return RITZ_OK;
 }
 
-/* Add sign S X to columns first, first + 1, ... of a matrix of each quantity. */
+/* Add sign S X to the columns of a matrix of each quantity, from `first` on. */
 static ritz_status add_rows(const statics *s, const ritz_dense *X, double sign,
                             int64_t first, matrix_of of)
 {
@@ -102,8 +102,8 @@ static ritz_status add_rows(const statics *s, const ritz_dense *X, double sign,
     return RITZ_OK;
 }
 
-/* Add sign S G C X to a matrix of each quantity, BLOCK columns at a time; C NULL
-   is the identity. */
+/* Add sign S G C X to a matrix of each quantity, BLOCK columns at a time; C
+   NULL is the identity. */
 static ritz_status add_response(const statics *s, const ritz_sparse *C,
                                 const ritz_dense *X, double sign, matrix_of of)
 {

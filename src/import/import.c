@@ -203,8 +203,9 @@ static bool is_held(const ritz_deck *deck, int64_t id)
     return true;
 }
 
-/* Keep grids that have rows in the matrices, and those that do not move: some
-   solvers leave out their rows. The motion of others is not known. */
+/* Keep the grids that have rows in the matrices, and the grids that the deck
+   holds: some solvers leave out the rows of these. The motion of any other grid
+   is not known. */
 static void keep_grids(const ritz_roster *roster, const ritz_deck *deck,
                        ritz_grids *grids)
 {
@@ -296,8 +297,8 @@ static void drop_zeros(ritz_matrix *m)
     m->imaginary = NULL;
 }
 
-/* A complex stiffness is K + i K4, unless K4 has a matrix of its own. There is
-   room for one part more. */
+/* Split a complex stiffness into K + i K4, unless K4 has a matrix of its own.
+   The array has room for one more part. */
 static ritz_status split_stiffness(ritz_component *component, ritz_parts *parts)
 {
     ritz_part *whole = &parts->part[0];

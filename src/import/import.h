@@ -1,6 +1,6 @@
 /*
- * Parts of ritz_import: requested matrices, names of their rows,
- * ports, inputs and outputs. Not for users.
+ * The parts of ritz_import: requested matrices, names of their rows, ports,
+ * inputs and outputs, quantities. Not for users.
  */
 #ifndef RITZ_IMPORT_IMPORT_H
 #define RITZ_IMPORT_IMPORT_H
@@ -17,7 +17,7 @@ typedef struct ritz_part {
     const char *what; /* "stiffness" */
     ritz_matrix matrix;
     ritz_sparse *becomes;
-    int64_t *place; /* row of the component-to-be of each of its rows */
+    int64_t *place; /* of each of its rows: row of the component */
 } ritz_part;
 
 typedef struct ritz_parts {
@@ -40,7 +40,8 @@ ritz_status ritz_roster_miss(const ritz_roster *roster, ritz_dof dof);
  * while the matrices are read. */
 typedef struct ritz_side_files ritz_side_files;
 
-/** Begin to read them. @param[out] out  freed by ritz_side_files_end() */
+/** Start the thread that reads them. @param[out] out  freed by
+   ritz_side_files_end() */
 ritz_status ritz_side_files_begin(const ritz_import_request *request,
                                   ritz_side_files **out);
 
@@ -48,13 +49,14 @@ ritz_status ritz_side_files_begin(const ritz_import_request *request,
  * one. @return what reading it returned, with its sentence */
 ritz_status ritz_side_files_deck(ritz_side_files *side, ritz_deck *out);
 
-/** The same of the names. */
+/** Wait until they are read, and take the names; otherwise as
+ * ritz_side_files_deck. */
 ritz_status ritz_side_files_names(ritz_side_files *side, ritz_row_names *out);
 
 /** Wait until they are read, and free what was not taken; *side may be NULL. */
 void ritz_side_files_end(ritz_side_files **side);
 
-/** Name the rows of all parts, and give each part its places. */
+/** Find the names of the rows of all parts, and set `place` of each part. */
 ritz_status ritz_names_find(const ritz_import_request *request,
                             const ritz_deck *deck, ritz_side_files *side,
                             ritz_parts *parts, ritz_row_names *out);
@@ -144,8 +146,9 @@ ritz_status ritz_tying_recover(const ritz_tying *tying,
 void ritz_tying_free(ritz_tying *tying);
 
 /*
- * A component whose recovered dofs stand behind its rows, for what names dofs;
- * and how these follow: column k of `from` for dof num_rows + k.
+ * A component whose recovered dofs are appended to its rows, so that ports,
+ * inputs and outputs can name them. Column k of `from` expresses recovered dof
+ * num_rows + k by the rows.
  */
 typedef struct ritz_extended {
     ritz_component view; /* dof is owned, the rest borrowed */
@@ -222,13 +225,12 @@ ritz_status ritz_io_files_add(const ritz_import_request *request,
                               const ritz_io_files *files, ritz_io *io);
 void ritz_io_files_free(ritz_io_files *files);
 
-/* The dofs of a matrix, in its columns or its rows, and its number of inputs,
- * outputs or quantities. */
+/* Which side of a matrix of inputs, outputs or quantities has the dofs. */
 typedef struct ritz_layout {
     int64_t num_dofs;
     const ritz_dof *dof;
-    bool across; /* dofs are its columns */
-    int64_t count;
+    bool across;   /* its columns are dofs; else its rows */
+    int64_t count; /* of inputs, outputs or rows of a quantity, on the other */
 } ritz_layout;
 
 /** @param[in] input  whether dofs must be rows
@@ -237,19 +239,20 @@ ritz_status ritz_layout_find(const ritz_io_files *files,
                              const ritz_matrix *matrix, const char *spec,
                              bool input, ritz_layout *out);
 
-/* Rows of dofs that are none of the component. */
+/* In place of a row: the deck fixes the dof, or the component lacks it. */
 enum { RITZ_ROW_FIXED = -1, RITZ_ROW_NONE = -2 };
 
-/** Extended row of each dof, or RITZ_ROW_...; to be freed. */
+/** The row of each dof among extended rows, or RITZ_ROW_...; the caller frees
+ * it. */
 ritz_status ritz_layout_rows(const ritz_layout *layout, const ritz_deck *deck,
                              const ritz_extended *extended, int64_t **out);
 
-/** Refuse an entry of a dof that is no row. */
+/** Fail because a matrix has an entry for a dof that the component lacks. */
 ritz_status ritz_layout_refuse(const char *spec,
                                const ritz_import_report *report,
                                const ritz_extended *extended, ritz_dof dof);
 
-/** Take the texts of quantities apart. @return RITZ_ERR_ARGUMENT */
+/** Parse the texts "NAME=F[,KIND]" of a request. @return RITZ_ERR_ARGUMENT */
 ritz_status ritz_quantity_files_name(const ritz_import_request *request,
                                      ritz_io_files *files);
 

@@ -1,5 +1,5 @@
-/* Matrices that refer to dofs: which of their rows or columns is which dof, and
-   which row of the component that is. */
+/* The dofs of a matrix of inputs, outputs or quantities, and the rows of the
+   component that they are. */
 #include "import/import.h"
 
 #include "base/alloc.h"

@@ -225,7 +225,7 @@ static ritz_status choose_list(const ritz_deck *deck, int64_t n,
 
     *chosen = -1;
     if (list[EXTERNAL].count == n && n > 0)
-        *chosen = EXTERNAL; /* which says the order, too */
+        *chosen = EXTERNAL; /* the only list that states the order of rows */
     for (int k = 0; k < KINDS && *chosen != ALL && *chosen != EXTERNAL; k++) {
         if (list[k].count != n || n == 0)
             continue;
@@ -238,7 +238,8 @@ static ritz_status choose_list(const ritz_deck *deck, int64_t n,
         if (*chosen < 0)
             *chosen = k;
     }
-    /* where EXTRN is cut off, a list that fits by chance has another order */
+    /* if EXTRN is incomplete, another list of the right length has another
+       order */
     RITZ_REFUSE_IF(*chosen >= 0 && *chosen != EXTERNAL &&
                        list[EXTERNAL].count > 0,
                    RITZ_ERR_FORMAT,

@@ -1,4 +1,3 @@
-/* Edges of cells. */
 #include "model/cell_edges.h"
 
 #include <stddef.h>

@@ -5,9 +5,8 @@
 #include <ritz/parts.h>
 
 /*
- * Corners at the ends of the edges of a cell. The node between the ends of edge
- * k, if cells of the kind have one, is the k-th behind the corners
- * [Schroeder2006].
+ * The edges of a cell, as pairs of its corners. If a kind of cell has nodes on
+ * its edges, they follow the corners in the order of the edges [Schroeder2006].
  */
 typedef struct ritz_cell_edges {
     ritz_cell linear;
@@ -15,7 +14,7 @@ typedef struct ritz_cell_edges {
     signed char end[12][2];
 } ritz_cell_edges;
 
-/** The edges of a kind of cell, linear or not; none if there is no such kind. */
+/** The edges of a kind of cell, linear or quadratic; none of other kinds. */
 const ritz_cell_edges *ritz_cell_edges_of(int64_t kind);
 
 #endif

@@ -1,7 +1,6 @@
 /*
- * Conversions that let tools use small models further: a configuration of a
- * system as a reduced component, a reduced component as a component, and a
- * reduced component as a state space.
+ * Conversions between small models: a configuration of a system to a reduced
+ * component, and a reduced component to a component or to a state space.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -120,7 +119,7 @@ static void turn_vector(const double R[static 9], const double x[static 3],
         y[i] = R[3 * i] * x[0] + R[3 * i + 1] * x[1] + R[3 * i + 2] * x[2];
 }
 
-/* Translations or rotations of a grid, rows i to i + 2, along system axes. */
+/* Turn rows i to i + 2, the translations or rotations of a grid, by R. */
 static void turn_rows(const double *R, int64_t i, ritz_dense *map)
 {
     for (int64_t j = 0; j < map->ncol; j++) {
@@ -140,8 +139,7 @@ static bool has_three(const ritz_port_map *port, int64_t i)
            port->dof[i + 2].component == port->dof[i].component + 2;
 }
 
-/* The port of a body in a system that places the point x of the body at R x +
- * t. */
+/* The port of a body in a system, where a point x of the body is at R x + t. */
 static ritz_status place_port(const ritz_port_map *from, const ritz_dense *P,
                               const double *R, const double *t,
                               ritz_port_map *out)
@@ -165,7 +163,7 @@ static ritz_status place_port(const ritz_port_map *from, const ritz_dense *P,
     return RITZ_OK;
 }
 
-/* The power of ten above all grids of ports. */
+/* The smallest power of ten above all grid numbers of the ports. */
 static int64_t find_offset(int64_t count, const ritz_reduced *const *bodies)
 {
     int64_t power = 1;

@@ -56,8 +56,8 @@ static ritz_status check_rows(const ritz_reduced *reduced)
     return RITZ_OK;
 }
 
-/* A direction that a grid lacks is taken as zero displacement along a basic axis.
-   Hence grids with axes of their own must have all three or none. */
+/* A direction that a grid lacks is taken as zero displacement along a basic
+   axis. Hence grids with axes of their own must have all three or none. */
 static ritz_status check_nodes(const ritz_nodes *nodes, const char *what)
 {
     for (int64_t k = 0; k < nodes->count; k++) {

@@ -5,10 +5,11 @@
  *
  *     u = R (motion of the frame) + Psi eta,    Psi = T V - R W
  *
- * where R holds unit rigid motions about the basic origin. W is chosen to satisfy
- * a reference condition: Psi = 0 at the node of the frame (tangent), R'M Psi = 0
- * (mean axes, [Buckens1963]), or W = 0, which leaves the modes as they are in the
- * basis. Because K R = 0, stiffness and damping do not depend on W.
+ * where R holds unit rigid motions about the basic origin. W is chosen to
+ * satisfy a reference condition: Psi = 0 at the node of the frame (tangent),
+ * R'M Psi = 0 (mean axes, [Buckens1963]), or W = 0, which leaves the modes as
+ * they are in the basis. Because K R = 0, stiffness and damping do not depend
+ * on W.
  *
  * All vectors are along the basic axes.
  */
@@ -57,17 +58,17 @@ typedef struct ritz_floating {
 /**
  * The modes of a reduced component relative to a moving frame.
  *
- * The frame already has the rigid-body motion. If a mode were rigid too, the mass
- * matrix of frame and modes would be singular. If the columns of kind rigid span
- * all rigid-body motion, they are left out and the other columns are the modes.
- * Otherwise, as for Craig-Bampton, the modes are the eigenvectors of (K_r, M_r)
- * that have stiffness.
+ * The frame already has the rigid-body motion. If a mode were rigid too, the
+ * mass matrix of frame and modes would be singular. If the columns of kind
+ * rigid span all rigid-body motion, they are left out and the other columns are
+ * the modes. Otherwise, as for Craig-Bampton, the modes are the eigenvectors of
+ * (K_r, M_r) that have stiffness.
  *
  * @return RITZ_ERR_ARGUMENT if the component has no basis, positions, mass or
- *         invariants, has scalar points, or has no flexible mode; if there is no
- *         such frame or reference; if the reference is tangent or mean-axis and
- *         a rigid motion has stiffness; if it is tangent and the frame is at no
- *         grid, or at a grid whose rotation is not known
+ *         invariants, has scalar points, or has no flexible mode; if there is
+ *         no such frame or reference; if the reference is tangent or mean-axis
+ *         and a rigid motion has stiffness; if it is tangent and the frame is
+ *         at no grid, or at a grid whose rotation is not known
  * @cost   O(n r m + r^3)
  */
 ritz_status ritz_floating_of(const ritz_reduced *reduced,

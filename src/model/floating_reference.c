@@ -13,10 +13,10 @@
  *     mean-axis   R'MR W = R'MT V             [Buckens1963]
  *     tangent     C Z W = C V, C the rows of T at the node of the frame
  *
- * Both are solved for motions about the centre of mass, R N, whose rotations are
- * divided by the radius of gyration, so that the unit of length does not matter.
- * A motion that moves no mass, such as the rotation of grids on a line about
- * that line, is left out.
+ * Both are solved for motions about the centre of mass, R N, whose rotations
+ * are divided by the radius of gyration, so that the unit of length does not
+ * matter. A motion that moves no mass, such as the rotation of grids on a line
+ * about that line, is left out.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -135,8 +135,8 @@ static ritz_status find_mean_axes(const floating_source *s,
     return solve_least(&rigid->A, RITZ_PORT_HELD * RITZ_PORT_HELD, w, &rank);
 }
 
-/* Copy the rows of T of a grid's dofs, along the grid's own axes, to the first six
-   rows of C; those of rotations are multiplied by `length`. */
+/* Copy the rows of T of a grid's dofs, along the grid's own axes, to the first
+   six rows of C; those of rotations are multiplied by `length`. */
 static void put_grid(const floating_source *s, int64_t grid, double length,
                      ritz_dense *C)
 {
@@ -160,8 +160,8 @@ static bool port_has(const ritz_port_map *port, int64_t grid)
     return false;
 }
 
-/* Append to C the motion of all ports that contain a grid. @return number of rows
-   of C; if C is {0}, the rows are only counted */
+/* Append to C the motion of all ports that contain a grid. @return number of
+   rows of C; if C is {0}, the rows are only counted */
 static int64_t put_ports(const floating_source *s, int64_t grid, double length,
                          ritz_dense *C)
 {
@@ -199,8 +199,8 @@ static ritz_status find_held(const floating_source *s, int64_t grid,
     return RITZ_OK;
 }
 
-/* Refuse if `rest`, C (V - Z w), is larger than the rounding of T V and than the
-   error of positions that have few digits. */
+/* Refuse if `rest`, C (V - Z w), is larger than the rounding of T V and than
+   the error of positions that have few digits. */
 static ritz_status demand_held(const floating_source *s, int64_t grid,
                                const ritz_dense *CV, const ritz_dense *rest,
                                const ritz_dense *V)
@@ -219,8 +219,8 @@ static ritz_status demand_held(const floating_source *s, int64_t grid,
     return RITZ_OK;
 }
 
-/* Tangent frame: W = N w with C Z w = C V. The node alone is tried first, then the
-   node with its ports. */
+/* Tangent frame: W = N w with C Z w = C V. The node alone is tried first, then
+   the node with its ports. */
 static ritz_status find_tangent(const floating_source *s,
                                 const rigid_motions *rigid, int64_t grid,
                                 const ritz_dense *V, ritz_dense *w)

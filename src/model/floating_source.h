@@ -19,13 +19,14 @@ typedef struct floating_source {
 /**
  * Compute W and U from V, the frame and the reference condition of @p f.
  *
- * @return RITZ_ERR_ARGUMENT if the body does not allow this reference condition:
+ * * @return RITZ_ERR_ARGUMENT if the body does not allow this reference
+ * condition:
  *         see ritz_floating_of
  */
 ritz_status ritz_floating_refer(const floating_source *s, ritz_floating *f);
 
-/** Set column 3 + i of N, 6 x 6, so that this column of R N is @p scale times the
- * rotation about the point @p c along axis i. */
+/** Set column 3 + i of N, 6 x 6, so that this column of R N is @p scale times
+ * the rotation about the point @p c along axis i. */
 void ritz_floating_spin(const double *c, int i, double scale, ritz_dense *N);
 
 #endif

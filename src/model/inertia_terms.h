@@ -2,9 +2,9 @@
  * Inertia terms that simulators need for a body that deforms in a moving frame.
  * They are made from the inertia invariants of its modes.
  *
- * A point of the body at x, from the origin of the frame, moves by u = sum_k u_k
- * q_k. Let v~ w = v x w, let j, k, l number the m modes and a, b the axes, and
- * let integrals be over the mass of the body:
+ * A point of the body at x, from the origin of the frame, moves by u = sum_k
+ * u_k q_k. Let v~ w = v x w, let j, k, l number the m modes and a, b the axes,
+ * and let integrals be over the mass of the body:
  *
  *     S_k  = int u_k                h_k  = int x x u_k
  *     c_jk = int u_j x u_k          P_jk = int u_j u_k'
@@ -19,8 +19,8 @@
  *
  * because the equations of motion conserve momentum only if this holds.
  *
- * Matrices are column-major. In a column number such as 3 (j m + k) + b the last
- * index, b, runs fastest.
+ * Matrices are column-major. In a column number such as 3 (j m + k) + b the
+ * last index, b, runs fastest.
  */
 #ifndef RITZ_MODEL_INERTIA_TERMS_H
 #define RITZ_MODEL_INERTIA_TERMS_H
@@ -28,10 +28,10 @@
 #include <ritz/model.h>
 
 /*
- * MBDyn's invariants [MBDynTecman2023, Invariants]. MBDyn adds terms of the nodes'
- * inertia J_i and rotations V to them; here the integrals over mass that moves by
- * u + V x r already contain these terms, in I4, I6, I7 and I8. Therefore I10 and
- * I11, which consist of V and J_i alone, are zero.
+ * MBDyn's invariants [MBDynTecman2023, Invariants]. MBDyn adds terms of the
+ * nodes' inertia J_i and rotations V to them; here the integrals over mass that
+ * moves by u + V x r already contain these terms, in I4, I6, I7 and I8.
+ * Therefore I10 and I11, which consist of V and J_i alone, are zero.
  */
 typedef struct ritz_mbdyn_terms {
     double I1;     /* mass */

@@ -1,9 +1,9 @@
 /*
- * Inertia invariants of moving bodies. A mass dm that belongs to grid i is at
- * x = x_i + r_i and moves by v = u_i + theta_i x r_i. The blocks of M give the
- * integrals of 1, r and r r' over the mass (invariants_mass.h). For axes a, b, d
- * let p_b(i) be the momentum along b of the mass of grid i, and h_db(i) its first
- * moment along d,
+ * Inertia invariants of moving bodies. A mass dm that belongs to grid i is at x
+ * = x_i + r_i and moves by v = u_i + theta_i x r_i. The blocks of M give the
+ * integrals of 1, r and r r' over the mass (invariants_mass.h). For axes a, b,
+ * d let p_b(i) be the momentum along b of the mass of grid i, and h_db(i) its
+ * first moment along d,
  *
  *     p_b(i)  = sum_j int v_jb           h_db(i) = sum_j int r_id v_jb
  *

@@ -165,8 +165,8 @@ void ritz_beams_free(ritz_beams *beams)
 
 enum { ALONG, ACROSS, SLOPE, FUNCTIONS }; /* n, H, K */
 
-/* integral[f][g][i][j] = 420 int_0^1 f_i g_j dxi, with f and g among n, H, K, of
-   ends i and j. */
+/* integral[f][g][i][j] = 420 int_0^1 f_i g_j dxi, with f and g among n, H, K,
+   of ends i and j. */
 static const double integral[FUNCTIONS][FUNCTIONS][2][2] = {
     [ALONG] = {{{140, 70}, {70, 140}},
                {{147, 63}, {63, 147}},
@@ -192,8 +192,8 @@ static double term(const ritz_beam *beam, int f, int i, int g, int j)
 enum { COUPLING, BENDING, TORSION, AXIS, EVEN, PARTS };
 
 /*
- * One of these matrices, for unit mass and along basic axes, with rows of node i
- * and columns of node j. `own`: i = j. e points from i to the other node.
+ * One of these matrices, for unit mass and along basic axes, with rows of node
+ * i and columns of node j. `own`: i = j. e points from i to the other node.
  */
 static void fill_part(int part, bool own, const double *e, double B[6][6])
 {
@@ -221,8 +221,8 @@ static void fill_part(int part, bool own, const double *e, double B[6][6])
         }
 }
 
-/* Transform a block from basic axes to those of nodes i and j; entries of absent
-   dofs are 0. */
+/* Transform a block from basic axes to those of nodes i and j; entries of
+   absent dofs are 0. */
 static void turn_block(const ritz_beam *beam, int i, int j,
                        const double B[6][6], double out[36])
 {
@@ -314,8 +314,8 @@ static double scale_of(const ritz_beam *beam, int k)
            (k % 6 < 3 ? 1.0 : 1.0 / beam->L);
 }
 
-/* The mass of a beam from its block of nodes i and j, and in `axial` the term of
- * s_i with s_j. @return 0 if the block is not that of a beam */
+/* The mass of a beam from its block of nodes i and j, and in `axial` the term
+ * of s_i with s_j. @return 0 if the block is not that of a beam */
 static double fit_block(const ritz_beam *beam, int i, int j,
                         const double *block, double *axial)
 {
@@ -413,9 +413,9 @@ static double mean_term(const ritz_beam *beam, int i, int j)
  *
  *     (e n_i s_i + H_i l_i + L K_i t_i)_a (e n_j s_j + H_j l_j + L K_j t_j)_b
  *
- * invariants_mass.h has m (s_i + l_i)_a (s_j + l_j)_b in place of the terms of s
- * and l, uses the term of l with t for that of s with t, and has the right term
- * of t with t. C is the difference.
+ * invariants_mass.h has m (s_i + l_i)_a (s_j + l_j)_b in place of the terms of
+ * s and l, uses the term of l with t for that of s with t, and has the right
+ * term of t with t. C is the difference.
  */
 static void fill_weights(const ritz_beam *beam, double C[6][6])
 {
@@ -531,8 +531,8 @@ ritz_status ritz_beams_weigh(const ritz_beams *beams, const ritz_dense *S,
 }
 
 /*
- * The position of a point of the beam is its motion if u_i = x_i and t_i = 0, so
- * `at` holds the rows of S for that motion, to be multiplied by C S.
+ * The position of a point of the beam is its motion if u_i = x_i and t_i = 0,
+ * so `at` holds the rows of S for that motion, to be multiplied by C S.
  * invariants_mass.h also multiplies the arms of t_i, here e_a L K_i, with the
  * motion: `arm` subtracts these integrals.
  */

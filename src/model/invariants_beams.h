@@ -1,7 +1,7 @@
 /*
- * Straight beams with consistent mass. They are recognised in M, by the blocks of
- * grids that a line cell joins; and the terms of their inertia invariants that
- * the form of invariants_mass.h lacks are computed.
+ * Straight beams with consistent mass. They are recognised in M, by the blocks
+ * of grids that a line cell joins; and the terms of their inertia invariants
+ * that the form of invariants_mass.h lacks are computed.
  *
  * A beam along e from grid 1 to grid 2, of length L and mass mu, moves at xi =
  * x / L by
@@ -13,10 +13,10 @@
  *     n_2 = xi         H_2 = 3 xi^2 - 2 xi^3         K_2 = xi^3 - xi^2
  *
  * Its mass matrix has no products of s with l or t, but the invariants have. A
- * block of M is that of such a beam if the terms of l with t give a mass mu, the
- * terms of t with t and of l with l agree with that mu, and the rest is
- * a e e' + d I for translations and a multiple of e e' for rotations. The terms
- * of s with s are taken from M, all others from mu and the integrals of the
+ * block of M is that of such a beam if the terms of l with t give a mass mu,
+ * the terms of t with t and of l with l agree with that mu, and the rest is a e
+ * e' + d I for translations and a multiple of e e' for rotations. The terms of
+ * s with s are taken from M, all others from mu and the integrals of the
  * functions above.
  */
 #ifndef RITZ_MODEL_INVARIANTS_BEAMS_H
@@ -57,8 +57,8 @@ ritz_status ritz_beams_list(const ritz_elements *elements,
 ritz_beam *ritz_beams_find(const ritz_beams *beams, int64_t i, int64_t j);
 
 /**
- * Set the mass of a beam from the block of M that joins its nodes; it stays 0 if
- * that is not the block of a beam.
+ * Set the mass of a beam from the block of M that joins its nodes; it stays 0
+ * if that is not the block of a beam.
  *
  * @param[in] column  0 or 1: the node whose columns the block has
  * @param[in] block   6 x 6, row by row, along the axes of the nodes; its rows
@@ -80,9 +80,10 @@ void ritz_beam_take_out(const ritz_beam *beam, int end, double block[36]);
 void ritz_beams_keep(ritz_beams *beams);
 
 /*
- * The motion of the beams along basic axis a is S_a, with six rows for each beam:
- * e_a s_1, e_a s_2, l_1a, l_2a, t_1a, t_2a. int v_a v_b by invariants_mass.h
- * lacks S_a' C S_b, where C is block diagonal with a 6 x 6 block for each beam.
+ * The motion of the beams along basic axis a is S_a, with six rows for each
+ * beam: e_a s_1, e_a s_2, l_1a, l_2a, t_1a, t_2a. int v_a v_b by
+ * invariants_mass.h lacks S_a' C S_b, where C is block diagonal with a 6 x 6
+ * block for each beam.
  */
 
 /** S_a of each column of T. */

@@ -105,9 +105,9 @@ static ritz_status place_dofs(int64_t num_dofs, columns *c)
 }
 
 /* Find the nodes i whose blocks M_ij are not zero, in no order. They are the
-   entries of column j of m, which begins at entry `first`. If `rowind` is given,
-   they are stored there and their blocks in c->block. @return where the column
-   ends */
+   entries of column j of m, which begins at entry `first`. If `rowind` is
+   given, they are stored there and their blocks in c->block. @return where the
+   column ends */
 static int64_t take_column(columns *c, int64_t j, int64_t first,
                            int64_t *rowind)
 {
@@ -180,9 +180,9 @@ static double mean_of(const columns *c, int64_t i, int64_t j,
 }
 
 /*
- * The weight of component d of f in the block of the translations p of one node,
- * with axes a, and the rotations q of the other, with axes b:
- * sum_pq ((a_p x b_q)_d)^2. It is 2 if both nodes have all these dofs.
+ * The weight of component d of f in the block of the translations p of one
+ * node, with axes a, and the rotations q of the other, with axes b: sum_pq
+ * ((a_p x b_q)_d)^2. It is 2 if both nodes have all these dofs.
  */
 static double count_turns(const double *a, const int64_t *moves,
                           const double *b, const int64_t *turns, int d)
@@ -267,8 +267,8 @@ static void fit_beam(const ritz_beams *beams, int64_t i, int64_t j,
         ritz_beam_take_out(beam, column, own);
 }
 
-/* Read m, arms and beams from the blocks of column j of m, which begins at entry
-   `first`. */
+/* Read m, arms and beams from the blocks of column j of m, which begins at
+   entry `first`. */
 static ritz_status read_column(const columns *c, int64_t j, int64_t first,
                                ritz_sparse *m, ritz_nodal_mass *mass)
 {

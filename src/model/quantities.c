@@ -34,7 +34,7 @@ const char *ritz_quantity_name(const ritz_quantity *quantity, int64_t row,
     return text;
 }
 
-/* What holds of components and of reduced components. */
+/* Checks for quantities of components and of reduced components alike. */
 static ritz_status check_names(int64_t count, const ritz_quantity *quantity,
                                int64_t k)
 {
@@ -108,7 +108,7 @@ ritz_status ritz_quantities_check_reduced(int64_t count,
     return RITZ_OK;
 }
 
-/* A T, {0} of an absent A. */
+/* A T; {0} if there is no A. */
 static ritz_status project(const ritz_dense *A, const ritz_dense *T,
                            ritz_dense *out)
 {

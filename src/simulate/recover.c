@@ -5,9 +5,9 @@
  *
  *     y = Q q + V q' + A P q'' + F f - H g,   g_j = c_j b_j'q' + k_j b_j'q
  *
- * with the inputs f and the forces g of the dampers. Damping that is stated as a
- * rule, not as a matrix, causes more forces. With A = -S G M T and
- * Q - S T = -S G K T (bases/mode_acceleration.c), damping a M + b K adds
+ * with the inputs f and the forces g of the dampers. Damping that is stated as
+ * a rule, not as a matrix, causes more forces. With A = -S G M T and Q - S T =
+ * -S G K T (bases/mode_acceleration.c), damping a M + b K adds
  *
  *     a A P q' + b (Q - S T) q' - b H (k_j b_j'q')_j,
  *
