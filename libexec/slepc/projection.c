@@ -7,8 +7,8 @@
  * K_p has entries in few rows, those of the rank's dofs and their neighbours.
  * The rank needs no other rows of T, which it gets from rank 0. As K is
  * symmetric, the rank's columns are used as rows: sums of K T with twice the
- * digits are then complete in one rank. A rank has all dofs of a grid, as the
- * inertia invariants of beams are made from whole blocks of M.
+ * digits are then complete in one rank. All dofs of a grid are in one rank, as
+ * the inertia invariants of beams need whole blocks of M.
  */
 #include "projection.h"
 
@@ -153,8 +153,8 @@ static void mark_touched(const share *s, bool *mark)
     }
 }
 
-/* Mark all dofs of each grid of which one is marked: which directions two grids
-   share decides the mass that joins them. */
+/* If a dof of a grid is marked, mark all its dofs: the mass between two grids
+   is computed from the directions that both have. */
 static ritz_status mark_grids(const share *s, bool *mark)
 {
     const ritz_grids *grids = &s->component->grids;

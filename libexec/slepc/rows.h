@@ -20,8 +20,9 @@ typedef struct rows_frame {
     int64_t num_attached;
     const int64_t *sorted;   /* attached dofs, ascending */
     const int64_t *position; /* column of K_ib of each dof of `sorted` */
-    const ritz_dof *dof; /* a grid's consecutive dofs stay in one rank; NULL:
-                                they need not */
+    const ritz_dof
+        *dof; /* of the component: consecutive dofs of a grid go to one
+                            rank; NULL: they may be divided */
 } rows_frame;
 
 /* Matrices of the interior, i.e. of all dofs that are not attached, in the

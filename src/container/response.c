@@ -140,9 +140,11 @@ static const ritz_member simulation_members[] = {
      "coordinates of the model, of `--coordinates`", .optional = "coordinates",
      .some = 'c'},
     {"coordinates/v", SET_REAL, RITZ_AT(ritz_simulation, v), "k c",
-     "their rates", .optional = "coordinates", .some = 'c'},
+     "first derivatives of the coordinates", .optional = "coordinates",
+     .some = 'c'},
     {"coordinates/a", SET_REAL, RITZ_AT(ritz_simulation, a), "k c",
-     "the rates of these", .optional = "coordinates", .some = 'c'},
+     "second derivatives of the coordinates", .optional = "coordinates",
+     .some = 'c'},
     {0},
 };
 
@@ -159,7 +161,7 @@ const ritz_schema ritz_schema_simulation = {
     .settle = settle_simulation,
 };
 
-/* Maxima over time. */
+/* Maxima of quantities over time. */
 
 static const ritz_member peaks_members[] = {
     {"kind", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_peaks, kind), "",
@@ -171,7 +173,7 @@ static const ritz_member peaks_members[] = {
     {"part", SET_WORDS, RITZ_AT(ritz_peaks, part), "k",
      "what each row is there"},
     {"value", SET_REAL, RITZ_AT(ritz_peaks, value), "k",
-     "value of the largest size over time, with its sign"},
+     "value whose magnitude is the largest over time, with its sign"},
     {"seconds", SET_REAL, RITZ_AT(ritz_peaks, seconds), "k",
      "time at which it was reached first"},
     {0},

@@ -23,7 +23,8 @@ static bool is_tracks(const char *path)
     return is;
 }
 
-/* A collection of VTK, told by the first kilobytes, behind comments. */
+/* Whether a file begins as a collection of VTK, behind comments of some
+   kilobytes at most. */
 static bool is_motion(const char *path)
 {
     char head[1 << 14];

@@ -19,7 +19,7 @@ enum {
     RIGID = 6,
 };
 
-/* What the classes look like, in the order in which they are drawn. */
+/* Colour and width of the lines of each class, in the order of drawing. */
 static const struct {
     const char *colour;
     double wide;
@@ -71,7 +71,8 @@ static ritz_status read_frame(const chart_sources *sources, const char *name,
     return ritz_frame_read(path, out);
 }
 
-/* Four frames at equal distances, none of them the first, if there are more. */
+/* Read all frames if there are at most four. Of more, read four that divide the
+   collection equally; the last frame is one of them, the first is not. */
 static ritz_status read_frames(const chart_sources *sources, motion_chart *m)
 {
     const char *text = sources->file->text;
@@ -143,8 +144,8 @@ static void take_out(int64_t n, const double *q, double *x)
         x[k] -= part * q[k];
 }
 
-/* Take out the rigid motion that fits the displacement best: what is left shows
-   the deformation, however far the body has moved. */
+/* Subtract from the displacements of each frame the rigid motion that fits them
+   best: the rest is the deformation, however far the body has moved. */
 static ritz_status deform(motion_chart *m)
 {
     const ritz_shapes *first = &m->frame[0].shapes;
@@ -160,7 +161,7 @@ static ritz_status deform(motion_chart *m)
         before = dot(n, column, column);
         for (int i = 0; i < j; i++)
             take_out(n, ritz_dense_col(&R, i), column);
-        /* points on a line do not tell a turn about it */
+        /* rotation about the line on which all points lie moves none of them */
         if (dot(n, column, column) < RITZ_NEGLIGIBLE * before)
             memset(column, 0, (size_t)n * sizeof *column);
         for (int64_t k = 0; k < m->count; k++)
@@ -211,7 +212,7 @@ static void choose_scale(motion_chart *m)
 
 /* ---- lines -------------------------------------------------------------- */
 
-/* A point seen from above, in front and from one side. */
+/* Project a displaced point on the picture; the view is oblique, from above. */
 static void project(const double *x, const double *u, double scale,
                     double out[2])
 {
@@ -398,8 +399,8 @@ static ritz_status draw(const char *path, motion_chart *m)
              "fits best",
              m->scale);
     return picture_draw(p, "motion.gp", "Stresses in motion",
-                        "a body at four times, deformed, its stresses as "
-                        "colours");
+                        "a deformed body at four times, coloured by its "
+                        "stresses");
 }
 
 ritz_status chart_motion(const chart_sources *sources,

@@ -284,8 +284,8 @@ static bool is_due(const char *what, double now)
     return true;
 }
 
-/* "candidates: 12 of 59, about 3.2 s left". @param[in] w  NULL: the total is not
-   known */
+/* "candidates: 12 of 59, about 3.2 s left". @param[in] w  NULL: the total is
+   not known */
 static void show_progress(const char *what, int64_t done, const step_series *w)
 {
     char line[80], text[CLI_DURATION];

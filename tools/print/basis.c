@@ -377,7 +377,8 @@ static ritz_status estimate_model(const model *full, ritz_basis *basis,
     return ritz_estimate(&full->component, &made, &given->estimate, reduced);
 }
 
-/* Mode acceleration, if asked for, of what has not been reduced before. */
+/* Compute mode acceleration if it is requested; refuse a model that was reduced
+   before, since its full matrices are gone. */
 static ritz_status correct_rows(cli_run *run, const model *full,
                                 const ritz_basis *basis,
                                 const reduce_options *given,

@@ -224,7 +224,7 @@ static void describe_recovery(cli_run *run, const ritz_recovery *recovery)
         cli_say(run, "%s", grids > SHOWN ? ", ..." : "");
 }
 
-/* Quantities to recover, a line each. */
+/* A line for each quantity that can be recovered. */
 static void describe_quantities(cli_run *run, int64_t count,
                                 const ritz_quantity *quantity)
 {

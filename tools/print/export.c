@@ -47,7 +47,8 @@ static ritz_status audit_rounded(const model *m,
                                    : ritz_audit_reduced(&rounded.reduced, out);
 }
 
-/* "stable: pole at ...", or the first check that fails. */
+/* The verdict, and its reason: the pole nearest to instability, or the first
+   check that fails. */
 static void sum_up(const ritz_audit *audit, const char **verdict,
                    char text[SUM_SIZE])
 {
@@ -67,8 +68,8 @@ static void sum_up(const ritz_audit *audit, const char **verdict,
         }
 }
 
-/* No simulator is handed a model that grows by itself or in an assembly, or one
-   of a method that promises nothing, unless it is wanted. */
+/* Refuse to export a model that is unstable, alone or in an assembly, and one
+   of a method that does not preserve stability, unless --force is given. */
 static ritz_status check_stability(cli_run *run, const model *m,
                                    const export_options *given)
 {
@@ -158,7 +159,8 @@ static ritz_status refuse_unknown(const char *path, const ritz_origin *origin)
         path, path);
 }
 
-/* Which errors are known of it: no number without its error. */
+/* Say which errors are known; refuse a model of unknown errors unless it is
+   forced. */
 static ritz_status say_errors(cli_run *run, const ritz_origin *origin,
                               const ritz_measures *errors,
                               const ritz_measures *estimates, bool force)
@@ -195,8 +197,8 @@ static ritz_status say_errors(cli_run *run, const ritz_origin *origin,
     return RITZ_OK;
 }
 
-/* Other codes join bodies by displacements, as which force columns are those
-   of macneal-rubin. */
+/* Refuse columns that are forces at an interface: other programs join bodies by
+   displacements. macneal-rubin makes the same columns as displacements. */
 static ritz_status check_forces(cli_run *run, const ritz_columns *columns,
                                 bool force)
 {
@@ -388,7 +390,7 @@ static int kinds_of(const ritz_exporter *exporter)
     return kinds;
 }
 
-/* Where the program of FMUs is installed. */
+/* The folder in which the program of FMUs is installed. */
 static ritz_status find_runtime(char folder[PATH_MAX])
 {
     RITZ_CHECK(libexec_find("ritz_fmu.so", folder));
@@ -396,7 +398,7 @@ static ritz_status find_runtime(char folder[PATH_MAX])
     return RITZ_OK;
 }
 
-/* Whatever it holds, as the exporter writes that. */
+/* Check the model, say what is known of it, and have the exporter write it. */
 static ritz_status export_model(cli_run *run, model *m,
                                 const export_options *given,
                                 ritz_export_report *done)
