@@ -1,5 +1,6 @@
 #include "formats/history_lines.h"
 
+#include "base/alloc.h"
 #include "base/text.h"
 
 #include <errno.h>
@@ -8,6 +9,15 @@
 #include <string.h>
 
 static const char blanks[] = " \t\r\n";
+
+static ritz_status keep_comment(history_lines *lines)
+{
+    if (!lines->wanted || lines->kept ||
+        strncmp(lines->text, lines->wanted, strlen(lines->wanted)) != 0)
+        return RITZ_OK;
+    RITZ_CHECK_COPY(lines->kept, lines->text, (int64_t)strlen(lines->text) + 1);
+    return RITZ_OK;
+}
 
 ritz_status history_lines_next(history_lines *lines, bool *more)
 {
@@ -32,6 +42,7 @@ ritz_status history_lines_next(history_lines *lines, bool *more)
         length = (ssize_t)strspn(lines->text, blanks);
         if (lines->text[length] && lines->text[length] != '#')
             return RITZ_OK;
+        RITZ_CHECK(keep_comment(lines));
     }
 }
 
@@ -88,6 +99,6 @@ void history_lines_free(history_lines *lines)
 {
     if (lines->file)
         fclose(lines->file);
-    free(lines->text);
+    RITZ_FREE(lines->text, lines->kept);
     *lines = (history_lines){0};
 }

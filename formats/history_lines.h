@@ -11,10 +11,14 @@ typedef struct history_lines {
     char *text; /* the last line */
     size_t room;
     int64_t number; /* of that line, from 1 */
+    const char
+        *wanted; /* borrowed: a comment that begins so is kept; or NULL */
+    char *kept;  /* it, the first; NULL: not seen */
 } history_lines;
 
 /**
- * Read the next line that is neither blank nor begins with '#'.
+ * Read the next line that is neither blank nor a comment of '#', and keep the
+ * comment that is wanted if it comes before.
  *
  * @param[out] more  false at the end of the file
  * @return RITZ_ERR_FORMAT if the line contains a NUL; RITZ_ERR_FILE;

@@ -4,6 +4,14 @@
  * column [Gerstmayr2023]. Files that write_csv of FMPy makes begin with a line
  * of names, one of which is "time". Any other table with commas or blanks
  * between its columns can be read too.
+ *
+ * A solution of Exudyn has the coordinates of all bodies, and says how many in a
+ * comment,
+ *
+ *     #number of written coordinates [nODE2, nVel2, nAcc2, ...] = [19,19,...]
+ *
+ * A flexible body has those of its frame before its modes: 7 with Euler
+ * parameters, 6 with other rotations.
  */
 #include "formats/history_lines.h"
 
@@ -12,6 +20,7 @@
 
 #include <ritz/recover.h>
 
+#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -22,6 +31,16 @@
 enum { RATES = 3 }; /* q, q', q'' */
 
 static const char letters[RATES + 1] = "qva";
+
+/* The text before and after k in the names of coordinates and rates; an FMU
+   names rates as derivatives of its states. */
+static const char *const spellings[RATES][2][2] = {
+    {{"q[", "]"}},
+    {{"v[", "]"}, {"der(q[", "])"}},
+    {{"a[", "]"}, {"der(v[", "])"}},
+};
+
+static const char solution_head[] = "#number of written coordinates";
 
 typedef struct table {
     history_lines lines;
@@ -168,15 +187,16 @@ static int64_t find_name(const table *t, const char *name)
 
 /* Find the columns "q[1]", "q[2]", ...; *out stays NULL if there is no
    "q[1]". */
-static ritz_status take_indexed(const table *t, char letter, int64_t due,
-                                int64_t **out)
+static ritz_status take_spelled(const table *t, const char *const spelling[2],
+                                int64_t due, int64_t **out)
 {
     RITZ_OWN_ARRAY int64_t *column = NULL;
     char name[RITZ_NAME_SIZE];
 
     RITZ_CHECK_NEW(column, due);
     for (int64_t j = 0; j < due; j++) {
-        snprintf(name, sizeof name, "%c[%" PRId64 "]", letter, j + 1);
+        snprintf(name, sizeof name, "%s%" PRId64 "%s", spelling[0], j + 1,
+                 spelling[1]);
         column[j] = find_name(t, name);
         if (column[j] < 0 && j == 0)
             return RITZ_OK;
@@ -185,6 +205,14 @@ static ritz_status take_indexed(const table *t, char letter, int64_t due,
                        name, due);
     }
     RITZ_MOVE(*out, column);
+    return RITZ_OK;
+}
+
+static ritz_status take_indexed(const table *t, int rate, int64_t due,
+                                int64_t **out)
+{
+    for (int k = 0; k < 2 && spellings[rate][k][0] && !*out; k++)
+        RITZ_CHECK(take_spelled(t, spellings[rate][k], due, out));
     return RITZ_OK;
 }
 
@@ -204,6 +232,56 @@ static ritz_status take_blocks(table *t, int64_t order)
         RITZ_CHECK_NEW(t->column[k], order);
         for (int64_t j = 0; j < order; j++)
             t->column[k][j] = 1 + k * order + j;
+    }
+    return RITZ_OK;
+}
+
+/* Counts of columns of each rate in the head of a solution. */
+static ritz_status read_head(const table *t, int64_t written[RATES])
+{
+    const char *at = strstr(t->lines.kept, "= [");
+
+    at = at ? at + 2 : "";
+    for (int k = 0; k < RATES; k++) {
+        char *end_of = NULL;
+
+        errno = 0;
+        written[k] = *at ? strtoll(at + 1, &end_of, 10) : -1;
+        RITZ_REFUSE_IF(written[k] < 0 || errno != 0 || end_of == at + 1 ||
+                           *end_of != ',',
+                       RITZ_ERR_FORMAT, "no counts follow '%s'", solution_head);
+        at = end_of;
+    }
+    return RITZ_OK;
+}
+
+/* The only body of a solution of Exudyn. */
+static ritz_status take_solution(const ritz_history_request *request, table *t)
+{
+    const int64_t order = request->order;
+    int64_t written[RATES] = {0};
+    int64_t frame = 0;
+    int64_t first = 1;
+
+    RITZ_CHECK(read_head(t, written));
+    frame = written[0] - order;
+    RITZ_REFUSE_IF(frame != 0 &&
+                       !(request->floating && (frame == 6 || frame == 7)),
+                   RITZ_ERR_ARGUMENT,
+                   "the solution has %" PRId64 " coordinates of all bodies, "
+                   "%" PRId64 " are due: name their columns by --q",
+                   written[0], order);
+    for (int k = 0; k < RATES; k++) {
+        if (written[k] != written[0])
+            continue;
+        RITZ_REFUSE_IF(written[k] > t->count - first, RITZ_ERR_FORMAT,
+                       "has %" PRId64 " columns, its head says that there are "
+                       "more",
+                       t->count);
+        RITZ_CHECK_NEW(t->column[k], order);
+        for (int64_t j = 0; j < order; j++)
+            t->column[k][j] = first + frame + j;
+        first += written[k];
     }
     return RITZ_OK;
 }
@@ -236,10 +314,10 @@ static ritz_status find_columns(const ritz_history_request *request, table *t)
             RITZ_CHECK(take_list(t, list[k], letters[k], request->order,
                                  &t->column[k]));
         else if (!t->waiting)
-            RITZ_CHECK(
-                take_indexed(t, letters[k], request->order, &t->column[k]));
+            RITZ_CHECK(take_indexed(t, k, request->order, &t->column[k]));
     if (!listed && t->waiting)
-        RITZ_CHECK(take_blocks(t, request->order));
+        RITZ_CHECK(t->lines.kept ? take_solution(request, t)
+                                 : take_blocks(t, request->order));
     RITZ_REFUSE_IF(!t->column[0], RITZ_ERR_ARGUMENT,
                    "no column is called 'q[1]': name those of the coordinates "
                    "by --q");
@@ -256,6 +334,7 @@ static ritz_status begin(FILE *file, const ritz_history_request *request,
         return RITZ_ERR_MEMORY;
     }
     t->lines.file = file;
+    t->lines.wanted = solution_head;
     history->own = t;
     RITZ_CHECK(read_names(t));
     RITZ_CHECK(find_columns(request, t));

@@ -53,6 +53,10 @@ int main(int argc, char **argv)
                  "coordinates of the history are of the model's modes, as in "
                  "an FMU, of those beside a floating frame, as in Exudyn and "
                  "MBDyn, or x of q = V x with a matrix V, F being FILE[:NAME]"),
+        CLI_TEXT("frame", &given.frame, "basic|centre|GRID",
+                 "frame of --transform floating, as it was exported [basic]"),
+        CLI_TEXT("reference", &given.reference, "none|mean-axis|tangent",
+                 "how the modes moved with it, as they were exported [none]"),
         CLI_TEXT("q", &given.q, "COLUMNS",
                  "columns of a table with coordinates, as 2-9, names or q*"),
         CLI_TEXT("v", &given.v, "COLUMNS", "columns with their rates"),

@@ -461,7 +461,6 @@ ritz_status ritz_row_table_parse(const char *path, const char *text,
                                  const char *kind, ritz_row_table *out);
 void ritz_row_table_free(ritz_row_table *table);
 
-/** "F" of "NAME=F[,KIND]"; the caller frees @p out.
 /** Copy "F" out of "NAME=F[,KIND]"; the caller frees @p out.
  * @return RITZ_ERR_ARGUMENT if it is not of this form */
 ritz_status ritz_import_recovery_spec(const char *text, char **out);

@@ -115,6 +115,7 @@ typedef struct ritz_history_request {
        "PREFIX*"; NULL: the usual ones of the format */
     const char *q, *v, *a, *f;
     bool unforced; /* no input acts: f = 0 */
+    bool floating; /* coordinates of a frame may come before those of `order` */
     double step;   /* of formats without times, s; 0: not known */
     int64_t label; /* of the body, in a file with several; 0: the first one */
 } ritz_history_request;

@@ -323,6 +323,8 @@ typedef struct recover_options {
     const char *modes, *to; /* words of the command line; modes NULL: either */
     const char *maxima, *table;
     const char *transform;
+    const char *frame,
+        *reference;            /* of --transform floating; NULL: the usual */
     const char *q, *v, *a, *f; /* columns of a table */
     double step;               /* of a file .mod; 0: not given */
     int64_t every, label;

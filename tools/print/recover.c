@@ -14,6 +14,7 @@ typedef struct recovery {
     model system;
     model body;
     ritz_dense V; /* q = V x; {0}: the history has q */
+    bool floats;  /* x is beside the rigid motion of a frame */
     ritz_damping damping;
     ritz_recoverer rules;
     ritz_recovered peaks;
@@ -78,13 +79,20 @@ static ritz_status take_modes(recovery *r)
 /* Modes beside a floating frame, as Exudyn and MBDyn get them. */
 static ritz_status take_floating(recovery *r)
 {
-    const ritz_floating_request usual = {0};
+    const ritz_floating_request request = {r->given->frame,
+                                           r->given->reference};
     RITZ_OWN(ritz_floating) body = {0};
 
     RITZ_CHECK_IN(r->given->component,
-                  ritz_floating_of(&r->body.reduced, &usual, &body));
-    RITZ_MOVE(r->V, body.V);
+                  ritz_floating_of(&r->body.reduced, &request, &body));
+    r->floats = body.num_rigid > 0;
+    RITZ_MOVE(r->V, body.U);
     return RITZ_OK;
+}
+
+static bool is_floating(const recover_options *given)
+{
+    return given->transform && strcmp(given->transform, "floating") == 0;
 }
 
 /* Modes of the component, or a matrix of a file. */
@@ -97,7 +105,7 @@ static ritz_status take_transform(recovery *r)
 
     if (strcmp(r->given->transform, "modes") == 0)
         return take_modes(r);
-    if (strcmp(r->given->transform, "floating") == 0)
+    if (is_floating(r->given))
         return take_floating(r);
     RITZ_CHECK_IN("--transform", ritz_foreign_collect(1, &wanted, &sums));
     for (int64_t k = 0; k < sums.count; k++) {
@@ -160,6 +168,7 @@ static ritz_status open_history(recovery *r)
         .a = given->a,
         .f = given->f,
         .unforced = given->system != NULL,
+        .floating = is_floating(given),
         .step = given->step,
         .label = given->label,
     };
@@ -171,7 +180,8 @@ static ritz_status open_history(recovery *r)
     return ritz_history_open(r->run->operand[0], &request, &r->history);
 }
 
-/* Whether the history and the component allow mode acceleration. */
+/* Whether the history and the component allow mode acceleration. Accelerations
+   beside a frame lack those of the frame. */
 static bool can_accelerate(const recovery *r)
 {
     const ritz_reduced *reduced = &r->body.reduced;
@@ -180,7 +190,7 @@ static bool can_accelerate(const recovery *r)
 
     for (int64_t k = 0; k < reduced->num_quantities; k++)
         any = any || reduced->quantity[k].Q.val;
-    return any && h->has_v && h->has_a &&
+    return any && !r->floats && h->has_v && h->has_a &&
            (h->has_f || h->unforced || reduced->io.num_inputs == 0);
 }
 
@@ -355,6 +365,9 @@ static void refuse_options(const cli_program *program,
         cli_refuse(program, "--system and --body belong together");
     if (given->system && given->transform)
         cli_refuse(program, "--system and --transform, one of them");
+    if ((given->frame || given->reference) && !is_floating(given))
+        cli_refuse(program,
+                   "--frame and --reference belong to --transform floating");
     if (given->model.at && !given->system)
         cli_refuse(program, "--at is of a system, which --system names");
 }

@@ -62,6 +62,18 @@ static const char named[] = "\"time\",\"v[1]\",\"q[1]\",\"q[2]\",\"v[2]\","
                             "0.0,10,1,2,20,7\n"
                             "0.25, 11,1.5,2.5,21, 8\n";
 
+/* What Exudyn 1.13 writes of a frame, two modes and a joint. */
+#define SOLUTION(counts)                                                       \
+    "#columns contain: time, ODE2 displacements, ODE2 velocities, ODE2 "       \
+    "accelerations, AE coordinates\n"                                          \
+    "#number of written coordinates [nODE2, nVel2, nAcc2, nODE1, nVel1, "      \
+    "nAlgebraic, nData] = [" counts ",0,0,1,0]\n"
+
+static const char solution[] =
+    SOLUTION("9,9,9") "0,.1,.2,.3,.4,.5,.6,.7,1,2,0,0,0,0,0,0,0,10,20,"
+                      "0,0,0,0,0,0,0,100,200,8\n"
+                      "#simulation finished=2026-11-28,18:44:28\n";
+
 static const char modal[] = "       2.1 1 10 100\n"
                             "       2.4 2 20 200\n"
                             "       3.1 9 9 9\n"
@@ -134,6 +146,63 @@ static void columns_are_chosen(void **)
                  "is no list of columns");
 }
 
+/* A frame has 7 coordinates, or 6, and they come first. */
+static void a_solution_has_a_frame_in_front(void **)
+{
+    ritz_history_request request = of_two();
+    held all;
+
+    request.floating = true;
+    assert_ok(read_all(folder_write("s.txt", solution), &request, &all));
+    assert_int_equal(all.count, 1);
+    assert_near(all.q[0][0], 1.0, 0.0);
+    assert_near(all.v[0][1], 20.0, 0.0);
+    assert_near(all.a[0][0], 100.0, 0.0);
+    /* 14 columns are not two blocks of seven coordinates */
+    assert_ok(read_all(
+        folder_write("q.txt", SOLUTION("8,0,0") "0,1,2,3,4,5,6,7,8,9\n"),
+        &request, &all));
+    assert_near(all.q[0][1], 8.0, 0.0);
+    assert_true(!all.has_v && !all.has_a);
+    assert_ok(read_all(folder_write("n.txt", SOLUTION("2,2,0") "0,1,2,3,4,9\n"),
+                       &request, &all));
+    assert_near(all.v[0][1], 4.0, 0.0);
+}
+
+static void solutions_of_more_bodies_need_columns(void **)
+{
+    ritz_history_request request = of_two();
+    const char *const path = folder_write("s.txt", solution);
+    held all;
+
+    assert_fails(read_all(path, &request, &all), RITZ_ERR_ARGUMENT,
+                 "the solution has 9 coordinates of all bodies, 2 are due");
+    request.q = "9-10";
+    assert_ok(read_all(path, &request, &all));
+    assert_near(all.q[0][1], 2.0, 0.0);
+    request.q = NULL;
+    request.floating = true;
+    request.order = 4;
+    assert_fails(read_all(path, &request, &all), RITZ_ERR_ARGUMENT,
+                 "9 coordinates of all bodies, 4 are due: name their columns");
+}
+
+static void derivatives_of_an_fmu_are_rates(void **)
+{
+    const ritz_history_request request = of_two();
+    held all;
+
+    assert_ok(
+        read_all(folder_write("d.csv", "\"time\",\"der(v[2])\",\"der(q[1])\","
+                                       "\"q[2]\",\"q[1]\",\"der(v[1])\","
+                                       "\"der(q[2])\"\n0,200,10,2,1,100,20\n"),
+                 &request, &all));
+    assert_near(all.q[0][0], 1.0, 0.0);
+    assert_near(all.v[0][0], 10.0, 0.0);
+    assert_near(all.v[0][1], 20.0, 0.0);
+    assert_near(all.a[0][1], 200.0, 0.0);
+}
+
 static void a_body_of_mbdyn_is_chosen_by_its_label(void **)
 {
     const char *const path = folder_write("b.mod", modal);
@@ -200,6 +269,14 @@ static void what_is_no_history_is_refused(void **)
         {"0,1,2\n1,1,x\n", "line 2: 'x' is no finite number"},
         {"0,1,2\n1,1,inf\n", "line 2: 'inf' is no finite number"},
         {"0 1 2\n\n-1 1 2\n", "time 2, -1 s, comes before 0 s"},
+        {SOLUTION("2,2,x") "0,1,2,3,4\n", "no counts follow '#number of"},
+        {SOLUTION("2,-2,0") "0,1,2,3,4\n", "no counts follow"},
+        {SOLUTION("2,99999999999999999999,0") "0,1\n", "no counts follow"},
+        {"#number of written coordinates\n0,1,2\n", "no counts follow"},
+        {SOLUTION("2,2,0") "0,1,2\n", "has 3 columns, its head says that"},
+        {SOLUTION("2,2,2") "0,1,2\n", "has 3 columns, its head says that"},
+        {"time,q[1],q[2],der(v[1])\n0,1,2,3\n",
+         "there is no column 'der(v[2])', of 2 coordinates"},
         {"1.1 1 2 3\n", "ends within time 1, after 1 of 2 modes"},
         {"1.1 1 2 3\n1.2 1 2\n", "line 2 has less than three numbers"},
         {"1.1 1 2 3\n1.2 1 2 3 4\n", "line 2 has more than three numbers"},
@@ -238,9 +315,9 @@ static ritz_status read_bytes(const char *bytes, int64_t size)
 
 static void damaged_files_are_refused(void **)
 {
-    const char *const files[] = {sensor, named, modal};
+    const char *const files[] = {sensor, named, modal, solution};
 
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 4; k++) {
         damage_cut(read_bytes, files[k], (int64_t)strlen(files[k]));
         damage_corrupt(read_bytes, files[k], (int64_t)strlen(files[k]));
     }
@@ -256,11 +333,12 @@ static ritz_status read_once(const char *path)
 
 static void all_allocations_may_fail(void **)
 {
-    const char *const paths[] = {folder_write("s.txt", sensor),
-                                 folder_write("n.csv", named),
-                                 folder_write("b.mod", modal)};
+    const char *const paths[] = {
+        folder_write("s.txt", sensor), folder_write("n.csv", named),
+        folder_write("b.mod", modal),
+        folder_write("w.txt", SOLUTION("2,2,0") "0,1,2,3,4,9\n")};
 
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 4; k++)
         assert_survives_every_allocation(read_once(paths[k]));
 }
 
@@ -300,6 +378,9 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_table_has_blocks_of_columns),
     cmocka_unit_test(a_table_has_names),
     cmocka_unit_test(columns_are_chosen),
+    cmocka_unit_test(a_solution_has_a_frame_in_front),
+    cmocka_unit_test(solutions_of_more_bodies_need_columns),
+    cmocka_unit_test(derivatives_of_an_fmu_are_rates),
     cmocka_unit_test(a_body_of_mbdyn_is_chosen_by_its_label),
     cmocka_unit_test(coordinates_are_transformed),
     cmocka_unit_test(what_is_no_history_is_refused),
