@@ -670,11 +670,21 @@ static ritz_status parse_cdb(const char *path, const char *bytes, int64_t size,
     return ritz_cdb_build(&all, out);
 }
 
-/* One of the first lines is a command that only files of ANSYS have. */
+static bool is_one_of(ritz_piece text, const char *const *words)
+{
+    while (*words && !is_word(text, *words))
+        words++;
+    return *words != NULL;
+}
+
+/* A line near the beginning is a command that only such files have. In a deck
+   of Abaqus it could be a line of a heading or the name of a set. */
 static bool is_cdb(const char *bytes, int64_t size)
 {
-    static const char *const words[] = {"/PREP7", "/COM", "/BATCH", "NBLOCK",
-                                        "EBLOCK"};
+    static const char *const own[] = {"/PREP7", "/COM",   "/BATCH",
+                                      "NBLOCK", "EBLOCK", NULL};
+    static const char *const foreign[] = {"*HEADING", "*NODE",    "*PART",
+                                          "*INCLUDE", "*ELEMENT", NULL};
     enum { LINES = 200 };
     ritz_lines text = {.at = bytes, .end = bytes + size};
 
@@ -684,9 +694,10 @@ static bool is_cdb(const char *bytes, int64_t size)
         split_command(
             ritz_piece_trim((ritz_piece){text.line, text.line_end - text.line}),
             0, &command);
-        for (size_t k = 0; k < sizeof words / sizeof *words; k++)
-            if (is_word(command.field[0], words[k]))
-                return true;
+        if (is_one_of(command.field[0], own))
+            return true;
+        if (is_one_of(command.field[0], foreign))
+            return false;
     }
     return false;
 }

@@ -296,6 +296,11 @@ static void the_format_is_recognised(void **state)
     assert_ptr_equal(ritz_deck_recognise("/prep7\n", 7), &ritz_deck_cdb);
     assert_ptr_equal(ritz_deck_recognise("! head\nnblock,3\n", 16),
                      &ritz_deck_cdb);
+    assert_ptr_equal(
+        ritz_deck_recognise("*Heading\n/COM,x\nNBLOCK\n*NODE\n", 29),
+        &ritz_deck_inp);
+    assert_ptr_equal(ritz_deck_recognise("*SET,A,1\n/COM,x\n", 16),
+                     &ritz_deck_cdb);
     assert_ptr_equal(ritz_deck_recognise("$ /PREP7\nGRID,1\n", 16),
                      &ritz_deck_nastran);
 }
