@@ -18,6 +18,7 @@ import numpy
 import scipy.linalg
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import recovery  # noqa: E402
 from common import DATA, Block, Tap, Tools  # noqa: E402
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -274,6 +275,41 @@ def check_spin(tap, tools, mbdyn):
               f"{bent:.1e}")
 
 
+def check_recovery(tap, tools, mbdyn):
+    """ritz-recover reads the .mod of the rotor that its hub holds: stresses and
+    displacements converge to those of the reduced model, and are those of the
+    full one within the error that ritz-verify states."""
+    rotor = recovery.Rotor(tools, "held", True, PUSH)
+    rotor.signal = f"sine:0.3*{PUSH}"
+    tools("ritz-export", "--force", "--to", "mbdyn", *recovery.DAMPED,
+          "held.h5", "-o", "rotor.fem")
+    own, full = rotor.reduced(), rotor.full()
+    errors = []
+    for step in 0.004, 0.002:
+        mbdyn("clamped", "rotor.fem", H=step, T=SECONDS, TOLERANCE=2e-12,
+              PUSH=PUSH)
+        every = round(recovery.EVERY / step)
+        tools("ritz-recover", "clamped.mod", "--step", step, "--component",
+              "held.h5", "--transform", "floating", "--modes", "displacement",
+              "--every", every, "--table", "maxima.tsv", "-o", "motion.pvd")
+        times, *found = rotor.read_pvd("motion.pvd")
+        count = len(times)
+        errors.append([recovery.error(f, o[:count])
+                       for f, o in zip(found, own)])
+    tap.near(times, recovery.EVERY * numpy.arange(count), 1e-12,
+             "recovery: times")
+    limits = rotor.stated()
+    for k, what in enumerate(["displacements", "stresses"]):
+        tap.check(errors[0][k] <= 1e-2 and errors[1][k] <= 0.3 * errors[0][k],
+                  f"recovery: {what} converge to those of ritz-simulate",
+                  f"{errors[0][k]:.1e}, {errors[1][k]:.1e} with half the step")
+        apart = recovery.error(found[k], full[k][:count])
+        stated = limits[k] / numpy.abs(full[k]).max()
+        tap.check(apart <= stated + errors[1][k],
+                  f"recovery: {what} are those of the full model within the "
+                  "stated error", f"{apart:.1e}, stated {stated:.1e}")
+
+
 def page_block(after):
     """Indented lines of the page behind the line that begins so."""
     lines = (DATA.parent / "docs" / "simulators.md").read_text().splitlines()
@@ -329,6 +365,7 @@ def main():
         check_free(tap, tools, mbdyn)
         check_clamped(tap, tools, mbdyn)
         check_spin(tap, tools, mbdyn)
+        check_recovery(tap, tools, mbdyn)
         check_page(tap, tools, mbdyn)
     tap.finish()
 
