@@ -204,6 +204,12 @@ static ritz_status take_spelled(const table *t, const char *const spelling[2],
                        "there is no column '%s', of %" PRId64 " coordinates",
                        name, due);
     }
+    snprintf(name, sizeof name, "%s%" PRId64 "%s", spelling[0], due + 1,
+             spelling[1]);
+    RITZ_REFUSE_IF(find_name(t, name) >= 0, RITZ_ERR_FORMAT,
+                   "there is a column '%s', and %" PRId64
+                   " coordinates are due: is it of another model?",
+                   name, due);
     RITZ_MOVE(*out, column);
     return RITZ_OK;
 }

@@ -277,6 +277,8 @@ static void what_is_no_history_is_refused(void **)
         {SOLUTION("2,2,2") "0,1,2\n", "has 3 columns, its head says that"},
         {"time,q[1],q[2],der(v[1])\n0,1,2,3\n",
          "there is no column 'der(v[2])', of 2 coordinates"},
+        {"time,q[1],q[2],q[3]\n0,1,2,3\n",
+         "there is a column 'q[3]', and 2 coordinates are due"},
         {"1.1 1 2 3\n", "ends within time 1, after 1 of 2 modes"},
         {"1.1 1 2 3\n1.2 1 2\n", "line 2 has less than three numbers"},
         {"1.1 1 2 3\n1.2 1 2 3 4\n", "line 2 has more than three numbers"},
