@@ -5,10 +5,10 @@
  * of names, one of which is "time". Any other table with commas or blanks
  * between its columns can be read too.
  *
- * A solution of Exudyn has the coordinates of all bodies, and says how many in a
- * comment,
+ * A solution of Exudyn has the coordinates of all bodies, and a comment says how
+ * many,
  *
- *     #number of written coordinates [nODE2, nVel2, nAcc2, ...] = [19,19,...]
+ *     #number of written coordinates [nODE2, nVel2, nAcc2, ...] = [19,19,..]
  *
  * A flexible body has those of its frame before its modes: 7 with Euler
  * parameters, 6 with other rotations.

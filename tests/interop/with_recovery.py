@@ -196,7 +196,7 @@ def check_fmpy(tap, rotor, version):
 
 def check_acceleration(tap, title, rotor, common):
     """der(v[k]) and the force are in the file. Where a held force jumps, so do
-    they: mode acceleration is no better than modes, but no worse than stated."""
+    they: mode acceleration is no better than modes, no worse than stated."""
     said = rotor.tools("ritz-recover", *common, "-o", "faster.pvd")
     tap.check("by mode acceleration" in said,
               f"{title}: derivatives and the force allow mode acceleration")
