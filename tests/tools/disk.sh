@@ -16,7 +16,7 @@ fails_on_each_disk() {
     sizes=$(seq 0 $((most / 11 + 1)) "$most")
     for blocks in $sizes "$most"; do
         got=0
-        rm -f "$out" "$out".h5
+        rm -f "$out"*
         # shellcheck disable=SC2016 # for the inner shell
         sh -c 'ulimit -f "$0"; exec "$@"' "$blocks" "$@" >log 2>&1 || got=$?
         if [ "$got" != 1 ] || [ -n "$(find . -name "$out*")" ]; then
@@ -27,7 +27,8 @@ fails_on_each_disk() {
     report yes "  leaves nothing on disks of up to $most blocks"
 }
 
-import_body rotor -q --port bearing=1 --output tip=6:1 -o rotor.h5
+import_body rotor -q --port bearing=1 --output-at tip=5:1 --units 'kg m s' \
+    -o rotor.h5
 rotor=$data/dualspin/rotor
 fails_on_each_disk copy.h5 ritz-import -q --stiffness "$rotor.op4:KGG" \
     --mass "$rotor.op4:MGG" --bulk "$rotor.bdf" --port bearing=1 -o copy.h5
@@ -36,7 +37,8 @@ fails_on_each_disk basis.h5 ritz-basis -q craig-bampton --up-to-hz 30 rotor.h5 \
 ritz-basis -q craig-bampton --up-to-hz 30 rotor.h5 -o basis.h5
 fails_on_each_disk reduced.h5 ritz-reduce -q rotor.h5 basis.h5 -o reduced.h5
 ritz-reduce -q rotor.h5 basis.h5 -o reduced.h5
-for format in output4 matlab exudyn xdmf vtu uff; do
+for format in output4 matlab exudyn xdmf vtu uff 42 chrono container dmig fmu \
+    fxbody mbdyn openfast sid simscape; do
     fails_on_each_disk "full.$format" \
         ritz-export -q --force --to $format reduced.h5 -o full.$format
 done
