@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: 0BSD */
 /*
- * exp(A h) and its integral times B from one exponential,
+ * E = exp(A h) and G, the integral of exp(A s) B over the step, from one
+ * exponential,
  *
- *     exp([A B/s; 0 0] h) = [E G/s; 0 I],
+ *     exp([A B/s; 0 0] h) = [E G/s; 0 I].
  *
  * Each input is divided by a scale s of its own, because an input of large unit
  * would increase the norm and thereby the number of doublings below.
@@ -103,7 +104,7 @@ static void sum_taylor(size_t n, double *const power[GROUP], double *work,
     }
 }
 
-/* X of balanced states, times h. @return its largest entry */
+/* Fill X with the balanced A times h. @return its largest entry */
 static double fill_states(size_t k, size_t n, const double *A,
                           const double *scale, double h, double *X)
 {
@@ -118,7 +119,8 @@ static double fill_states(size_t k, size_t n, const double *A,
     return largest;
 }
 
-/* A column of inputs, scaled by its own unit. @return the unit */
+/* Fill a column of X with that of an input, divided by the scale s of the head.
+   @return s */
 static double scale_input(size_t k, const double *B, const double *scale,
                           double largest, double h, double *X)
 {
@@ -134,7 +136,8 @@ static double scale_input(size_t k, const double *B, const double *scale,
     return unit;
 }
 
-/* F of X, which is lost; false: X is not finite. */
+/* Compute F from X = power[0], which is overwritten. @return false if X is not
+   finite, or too large */
 static bool exponential_less_one(size_t n, double *const power[GROUP],
                                  double *work, double *F)
 {

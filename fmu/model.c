@@ -18,10 +18,11 @@ enum {
     AT_BLOCKS = 112,
     WORD = 8,
     COUNTS = 4,
-    OSCILLATOR = 2 /* its states, and its numbers */
+    OSCILLATOR = 2 /* number of its states, and of its coefficients */
 };
 
-/* Products of two counts, and their sums, fit a size_t. */
+/* Largest count that is accepted: products of two counts, and sums of such
+   products, then fit a size_t. */
 static const uint64_t most = 1U << 20;
 
 static bool refuse(char why[FMU_MESSAGE_SIZE], const char *format, ...)
@@ -141,7 +142,7 @@ static const double *take(const double **at, size_t count)
     return part;
 }
 
-/* Where each matrix is among the numbers. */
+/* Let each matrix point to its numbers. */
 static void place_matrices(fmu_model *m)
 {
     const double *at = m->numbers;

@@ -1,18 +1,20 @@
 /* SPDX-License-Identifier: 0BSD */
 /*
- * A linear model x' = A x + B u, y = C x + D u as resources/ritz.bin holds it.
+ * The linear model x' = A x + B u, y = C x + D u that the file
+ * resources/ritz.bin holds.
  *
- * A is block diagonal: the states of an oscillator are q and q', of
- * q'' + d q' + lambda q = B_q' u; those of a dense block are any. The file is
- * little-endian; numbers have 8 bytes, matrices are stored by columns:
+ * A is block diagonal. A block is dense, or it is an oscillator
+ * q'' + d q' + lambda q = B_q' u with the states q and q'. The file is
+ * little-endian, numbers have 8 bytes, and matrices are stored by columns:
  *
- *     bytes  "RITZFMU1"
- *     hash   FNV-1a of 64 bits, of all bytes behind it [FowlerNollVo2019]
- *     bytes  64 hexadecimal digits, the instantiation token
- *     whole  numbers of inputs, outputs, states, blocks
- *     whole  of each block its states if it is dense; 0: an oscillator
- *     real   of each block A, or lambda and d
- *     real   B, C, D, and the nominal value of each state
+ *     bytes    "RITZFMU1"
+ *     integer  hash of all bytes that follow: FNV-1a of 64 bits
+ *              [FowlerNollVo2019]
+ *     bytes    64 hexadecimal digits, the instantiation token
+ *     integer  4: how many inputs, outputs, states and blocks there are
+ *     integer  for each block the number of its states; 0: an oscillator
+ *     real     for each block A, or lambda and d of an oscillator
+ *     real     B, C, D, and the nominal value of each state
  */
 #ifndef RITZ_FMU_MODEL_H
 #define RITZ_FMU_MODEL_H
@@ -24,7 +26,7 @@
 enum { FMU_TOKEN_SIZE = 65, FMU_MESSAGE_SIZE = 512 };
 
 typedef struct fmu_block {
-    size_t first, count; /* of its states */
+    size_t first, count; /* its states are first ... first + count - 1 */
     bool oscillates;
     const double *A; /* count x count; of an oscillator lambda and d */
 } fmu_block;
@@ -35,7 +37,7 @@ typedef struct fmu_model {
     size_t *block_of; /* num_states */
     const double *B, *C, *D, *nominal;
     char token[FMU_TOKEN_SIZE];
-    double *numbers; /* all of the above */
+    double *numbers; /* the array that A, B, C, D and nominal point into */
 } fmu_model;
 
 /**
@@ -46,7 +48,7 @@ typedef struct fmu_model {
 bool fmu_model_read(const char *path, fmu_model *out,
                     char why[FMU_MESSAGE_SIZE]);
 
-/** The same of the bytes of a file. */
+/** Take the model from the bytes of a file; otherwise as fmu_model_read. */
 bool fmu_model_parse(const unsigned char *bytes, size_t size, fmu_model *out,
                      char why[FMU_MESSAGE_SIZE]);
 void fmu_model_free(fmu_model *model);
@@ -59,7 +61,7 @@ void fmu_model_derive(const fmu_model *model, const double *x, const double *u,
 double fmu_model_output(const fmu_model *model, size_t i, const double *x,
                         const double *u);
 
-/** Entry of A. */
+/** Entry of A in row @p i and column @p j. */
 double fmu_model_A(const fmu_model *model, size_t i, size_t j);
 
 #endif

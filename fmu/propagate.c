@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Numbers that a block keeps for a step size. */
+/* How many numbers a block has in fmu_step. */
 static size_t count_numbers(const fmu_model *m, const fmu_block *b)
 {
     return b->oscillates ? sizeof(fmu_oscillator) / sizeof(double)
@@ -31,7 +31,8 @@ static bool fill_step(const fmu_model *m, double h, double *at)
     return true;
 }
 
-/* The kept step of that size, or that which was not used for longest. */
+/* The step that is kept for this size; if there is none, the step that was used
+   least recently, to be replaced. */
 static fmu_step *choose_step(fmu_steps *steps, double h)
 {
     fmu_step *oldest = steps->step;

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: 0BSD */
 /*
- * Inputs that are held over a step h are propagated without an error but
- * rounding,
+ * A step of the model over a time h in which the inputs are constant,
  *
- *     x_1 = exp(A h) x_0 + int_0^h exp(A s) ds B u,
+ *     x_1 = exp(A h) x_0 + int_0^h exp(A s) ds B u.
  *
- * block by block.
+ * It is exact but for rounding, and is computed block by block.
  */
 #ifndef RITZ_FMU_PROPAGATE_H
 #define RITZ_FMU_PROPAGATE_H
@@ -15,9 +14,9 @@
 /* exp(A h) and its integral for one step size. */
 typedef struct fmu_step {
     double h;
-    double *numbers; /* of each block: what propagate.c makes of it; NULL: this
-                        step is not made */
-    uint64_t used;   /* when it was, by a count */
+    double *numbers; /* for each block a fmu_oscillator, or the matrices of
+                        fmu_exponential; NULL: not computed */
+    uint64_t used;   /* value of `count` below when it was used last */
 } fmu_step;
 
 /* Importers subtract two times to get a step size, so that equal steps differ
@@ -26,7 +25,7 @@ enum { FMU_STEPS = 4 };
 
 typedef struct fmu_steps {
     fmu_step step[FMU_STEPS];
-    uint64_t count; /* of steps made so far */
+    uint64_t count; /* number of steps so far */
 } fmu_steps;
 
 /**
