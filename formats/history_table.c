@@ -46,10 +46,11 @@ typedef struct table {
     history_lines lines;
     char mark;    /* separator of columns */
     bool waiting; /* the first line has numbers, which are still to be used */
-    int64_t count, room;          /* columns */
-    char (*name)[RITZ_NAME_SIZE]; /* of each; "" if the file has no names */
-    double *value;                /* count, of the present line */
-    int64_t time;                 /* the column of times */
+    int64_t count, room;    /* columns */
+    char *head;             /* the first line, cut into names */
+    const char **name;      /* of each column; "" if the file has no names */
+    double *value;          /* count, of the present line */
+    int64_t time;           /* the column of times */
     int64_t *column[RATES]; /* order each, columns of q, q', q''; NULL: none */
     int64_t *input;         /* columns of the inputs; NULL: none */
 } table;
@@ -59,8 +60,8 @@ static void end(void *own)
     table *t = own;
 
     history_lines_free(&t->lines);
-    RITZ_FREE(t->name, t->value, t->column[0], t->column[1], t->column[2],
-              t->input);
+    RITZ_FREE(t->head, t->name, t->value, t->column[0], t->column[1],
+              t->column[2], t->input);
     free(t);
 }
 
@@ -87,31 +88,60 @@ static bool recognise(const char *bytes, int64_t size)
 
 /* ---- columns ------------------------------------------------------------ */
 
+/* The column called "time", the first one if none is. */
+static ritz_status find_time(table *t)
+{
+    int64_t found = -1;
+
+    for (int64_t k = 0; k < t->count; k++) {
+        if (strcasecmp(t->name[k], "time") != 0)
+            continue;
+        RITZ_REFUSE_IF(found >= 0, RITZ_ERR_FORMAT,
+                       "the columns %" PRId64 " and %" PRId64
+                       " are both called 'time'",
+                       found + 1, k + 1);
+        found = k;
+    }
+    t->time = found >= 0 ? found : 0;
+    return RITZ_OK;
+}
+
+/* Index of the column with a name; -1 if there is none. */
+static ritz_status find_name(const table *t, const char *name, int64_t *out)
+{
+    *out = -1;
+    for (int64_t k = 0; k < t->count && *name; k++) {
+        if (strcmp(t->name[k], name) != 0)
+            continue;
+        RITZ_REFUSE_IF(*out >= 0, RITZ_ERR_FORMAT,
+                       "the columns %" PRId64 " and %" PRId64
+                       " are both called '%.60s'",
+                       *out + 1, k + 1, name);
+        *out = k;
+    }
+    return RITZ_OK;
+}
+
 /* Read the first line, which has the names of columns or the first numbers. */
 static ritz_status read_names(table *t)
 {
-    RITZ_OWN_ARRAY char *copy = NULL;
     char *rest = NULL;
     double number = 0.0;
     bool more = false;
 
     RITZ_CHECK(history_lines_next(&t->lines, &more));
     RITZ_REFUSE_IF(!more, RITZ_ERR_FORMAT, "holds no times");
-    RITZ_CHECK_COPY(copy, t->lines.text, (int64_t)strlen(t->lines.text) + 1);
-    t->mark = history_lines_mark(copy);
-    rest = copy;
+    RITZ_CHECK_COPY(t->head, t->lines.text, (int64_t)strlen(t->lines.text) + 1);
+    t->mark = history_lines_mark(t->head);
+    rest = t->head;
     for (const char *field; (field = history_lines_field(&rest, t->mark));
          t->count++) {
         RITZ_CHECK_ROOM(t->name, t->count, t->room);
-        t->name[t->count][0] = '\0';
         if (t->count == 0)
             t->waiting = ritz_text_real(field, &number);
-        if (!t->waiting)
-            snprintf(t->name[t->count], RITZ_NAME_SIZE, "%s", field);
+        t->name[t->count] = t->waiting ? "" : field;
     }
-    for (int64_t k = 0; k < t->count; k++)
-        if (strcasecmp(t->name[k], "time") == 0)
-            t->time = k;
+    RITZ_CHECK(find_time(t));
     RITZ_CHECK_NEW(t->value, t->count);
     return RITZ_OK;
 }
@@ -142,10 +172,16 @@ static ritz_status take_item(const table *t, const char *item, int64_t due,
             put_column(from - 1, due, count, out);
         return RITZ_OK;
     }
-    for (int64_t k = 0; k < t->count; k++)
-        if (star ? strncmp(t->name[k], item, length - 1) == 0
-                 : strcmp(t->name[k], item) == 0)
+    if (!star) {
+        RITZ_CHECK(find_name(t, item, &from));
+        if (from >= 0)
+            put_column(from, due, count, out);
+    }
+    for (int64_t k = 0; star && k < t->count; k++)
+        if (strncmp(t->name[k], item, length - 1) == 0) {
+            RITZ_CHECK(find_name(t, t->name[k], &from));
             put_column(k, due, count, out);
+        }
     RITZ_REFUSE_IF(*count == before, RITZ_ERR_ARGUMENT,
                    "there is no column '%s'", item);
     return RITZ_OK;
@@ -176,15 +212,6 @@ static ritz_status take_list(const table *t, const char *list, char option,
     return RITZ_OK;
 }
 
-/* Index of the column with a name; -1 if there is none. */
-static int64_t find_name(const table *t, const char *name)
-{
-    for (int64_t k = 0; k < t->count; k++)
-        if (*name && strcmp(t->name[k], name) == 0)
-            return k;
-    return -1;
-}
-
 /* Find the columns "q[1]", "q[2]", ...; *out stays NULL if there is no
    "q[1]". */
 static ritz_status take_spelled(const table *t, const char *const spelling[2],
@@ -192,12 +219,13 @@ static ritz_status take_spelled(const table *t, const char *const spelling[2],
 {
     RITZ_OWN_ARRAY int64_t *column = NULL;
     char name[RITZ_NAME_SIZE];
+    int64_t more = -1;
 
     RITZ_CHECK_NEW(column, due);
     for (int64_t j = 0; j < due; j++) {
         snprintf(name, sizeof name, "%s%" PRId64 "%s", spelling[0], j + 1,
                  spelling[1]);
-        column[j] = find_name(t, name);
+        RITZ_CHECK(find_name(t, name, &column[j]));
         if (column[j] < 0 && j == 0)
             return RITZ_OK;
         RITZ_REFUSE_IF(column[j] < 0, RITZ_ERR_FORMAT,
@@ -206,7 +234,8 @@ static ritz_status take_spelled(const table *t, const char *const spelling[2],
     }
     snprintf(name, sizeof name, "%s%" PRId64 "%s", spelling[0], due + 1,
              spelling[1]);
-    RITZ_REFUSE_IF(find_name(t, name) >= 0, RITZ_ERR_FORMAT,
+    RITZ_CHECK(find_name(t, name, &more));
+    RITZ_REFUSE_IF(more >= 0, RITZ_ERR_FORMAT,
                    "there is a column '%s', and %" PRId64
                    " coordinates are due: is it of another model?",
                    name, due);
@@ -300,7 +329,7 @@ static ritz_status find_inputs(const ritz_history_request *request, table *t)
         return take_list(t, request->f, 'f', request->num_inputs, &t->input);
     RITZ_CHECK_NEW(input, request->num_inputs);
     for (int64_t j = 0; j < request->num_inputs; j++) {
-        input[j] = find_name(t, request->input[j]);
+        RITZ_CHECK(find_name(t, request->input[j], &input[j]));
         if (input[j] < 0)
             return RITZ_OK;
     }

@@ -146,6 +146,32 @@ static void columns_are_chosen(void **)
                  "is no list of columns");
 }
 
+/* A name may be used that is longer than those of our own files, and a name
+   that no one asks for may stand twice. */
+static void columns_of_one_name_are_not_chosen_by_it(void **)
+{
+#define LONG                                                                   \
+    "a.name.of.a.variable.that.is.longer.than.sixty.four.letters.in.all"
+    ritz_history_request request = of_two();
+    const char *const path = folder_write("t.csv", "time,x,y,x," LONG ".p," LONG
+                                                   ".q\n0,1,2,3,4,5\n");
+    held all;
+
+    request.q = LONG ".p," LONG ".q";
+    assert_ok(read_all(path, &request, &all));
+    assert_near(all.q[0][0], 4.0, 0.0);
+    assert_near(all.q[0][1], 5.0, 0.0);
+    request.q = "2,4";
+    assert_ok(read_all(path, &request, &all));
+    assert_near(all.q[0][1], 3.0, 0.0);
+    request.q = "x,y";
+    assert_fails(read_all(path, &request, &all), RITZ_ERR_FORMAT,
+                 "the columns 2 and 4 are both called 'x'");
+    request.q = "x*";
+    assert_fails(read_all(path, &request, &all), RITZ_ERR_FORMAT,
+                 "the columns 2 and 4 are both called 'x'");
+}
+
 /* A frame has 7 coordinates, or 6, and they come first. */
 static void a_solution_has_a_frame_in_front(void **)
 {
@@ -279,6 +305,14 @@ static void what_is_no_history_is_refused(void **)
          "there is no column 'der(v[2])', of 2 coordinates"},
         {"time,q[1],q[2],q[3]\n0,1,2,3\n",
          "there is a column 'q[3]', and 2 coordinates are due"},
+        {"time,q[1],q[2],q[1]\n0,1,2,3\n",
+         "the columns 2 and 4 are both called 'q[1]'"},
+        {"time,q[1],q[2],v[1],v[2],v[2]\n0,1,2,3,4,5\n",
+         "the columns 5 and 6 are both called 'v[2]'"},
+        {"time,q[1],q[2],Time\n0,1,2,3\n",
+         "the columns 1 and 4 are both called 'time'"},
+        {"time,q[1],q[2],push,push\n0,1,2,3,4\n",
+         "the columns 4 and 5 are both called 'push'"},
         {"1.1 1 2 3\n", "ends within time 1, after 1 of 2 modes"},
         {"1.1 1 2 3\n1.2 1 2\n", "line 2 has less than three numbers"},
         {"1.1 1 2 3\n1.2 1 2 3 4\n", "line 2 has more than three numbers"},
@@ -380,6 +414,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_table_has_blocks_of_columns),
     cmocka_unit_test(a_table_has_names),
     cmocka_unit_test(columns_are_chosen),
+    cmocka_unit_test(columns_of_one_name_are_not_chosen_by_it),
     cmocka_unit_test(a_solution_has_a_frame_in_front),
     cmocka_unit_test(solutions_of_more_bodies_need_columns),
     cmocka_unit_test(derivatives_of_an_fmu_are_rates),
