@@ -79,7 +79,7 @@ static ritz_status add_field(const char *name, const char *part,
 
     RITZ_CHECK_ROOM(frame->field, frame->num_fields, held);
     *room = held;
-    snprintf(frame->field[frame->num_fields], RITZ_NAME_SIZE, "%.31s%s%.31s",
+    snprintf(frame->field[frame->num_fields], RITZ_FIELD_NAME_SIZE, "%s%s%s",
              name, *part ? " " : "", part);
     *out = frame->num_fields++;
     return RITZ_OK;

@@ -2,12 +2,14 @@
  * Writes a series as a collection of VTK [Schroeder2006]: each frame is a file
  * with an unstructured grid in the folder NAME.frames, and NAME.pvd, next to
  * the folder, lists the times and files of all frames. Each frame gets its name
- * when it is complete, the list when all frames are.
+ * when it is complete, the list when all frames are. Later frames of an earlier
+ * series of this name are removed then.
  */
 #include "base/alloc.h"
 #include "formats/certificate.h"
 #include "formats/sink.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
@@ -99,12 +101,36 @@ static ritz_status print_list(FILE *file, const void *what)
     return RITZ_OK;
 }
 
+/* Whether a file of the folder is frame `count` or a later one. */
+static bool is_later_frame(const char *file, int64_t count)
+{
+    const size_t digits = strspn(file, "0123456789");
+
+    return digits >= 6 && strcmp(file + digits, ".vtu") == 0 &&
+           strtoll(file, NULL, 10) >= count;
+}
+
+/* Remove the frames that an earlier, longer series left in the folder. */
+static void remove_later_frames(pvd *p, int64_t count)
+{
+    DIR *folder = opendir(p->folder);
+
+    if (!folder)
+        return;
+    for (const struct dirent *file; (file = readdir(folder));)
+        if (is_later_frame(file->d_name, count))
+            (void)unlinkat(dirfd(folder), file->d_name, 0);
+    (void)closedir(folder);
+}
+
 static ritz_status finish(ritz_series *series, const char *path)
 {
     pvd *p = series->own;
 
     RITZ_CHECK(ritz_sink_write(path, print_list, series));
     p->finished = true;
+    if (!p->made)
+        remove_later_frames(p, series->count);
     return RITZ_OK;
 }
 

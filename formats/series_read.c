@@ -132,16 +132,19 @@ static ritz_status read_field(const char *text, ritz_shapes *out)
     const char *from = strstr(text, "<CellData>");
     const char *element = from ? strstr(from, "<DataArray ") : NULL;
     const char *name = element ? find_attribute(element + 1, "Name") : NULL;
+    const char *open = name ? strchr(name, '>') : NULL;
+    int length = 0;
 
-    if (!name)
+    if (!open)
         return RITZ_OK;
     RITZ_CHECK_NEW(out->field, 1);
     RITZ_CHECK_NEW(out->of_cell, out->cells.count);
-    snprintf(out->field[0], RITZ_NAME_SIZE, "%.*s",
-             (int)(strcspn(name, "\"") % RITZ_NAME_SIZE), name);
+    while (length < RITZ_FIELD_NAME_SIZE - 1 && name[length] != '"')
+        length++;
+    snprintf(out->field[0], RITZ_FIELD_NAME_SIZE, "%.*s", length, name);
     out->num_fields = 1;
-    return read_reals(find_array(from, out->field[0]), out->field[0],
-                      out->cells.count, true, out->of_cell);
+    return read_reals(open + 1, out->field[0], out->cells.count, true,
+                      out->of_cell);
 }
 
 ritz_status ritz_frame_parse(const char *text, ritz_shapes *out)

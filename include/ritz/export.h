@@ -20,6 +20,8 @@ typedef struct ritz_shape_mode {
                        included; 0 where hertz is not above 0 */
 } ritz_shape_mode;
 
+enum { RITZ_FIELD_NAME_SIZE = 2 * RITZ_NAME_SIZE };
+
 typedef struct ritz_shapes {
     int64_t num_points;  /* grids with a position and a dof */
     int64_t *id;         /* num_points, ascending */
@@ -35,9 +37,9 @@ typedef struct ritz_shapes {
     ritz_shape_mode *mode; /* count; NULL: columns of a basis, no modes */
     bool coupled; /* a damping matrix may couple modes, which no ratio says */
     bool structural; /* there is structural damping, which no ratio includes */
-    char units[RITZ_NAME_SIZE];    /* "kg m s"; "" if not known */
-    int64_t num_fields;            /* fields with a value for each cell */
-    char (*field)[RITZ_NAME_SIZE]; /* num_fields, "stress sx" */
+    char units[RITZ_NAME_SIZE];          /* "kg m s"; "" if not known */
+    int64_t num_fields;                  /* fields with a value for each cell */
+    char (*field)[RITZ_FIELD_NAME_SIZE]; /* num_fields, "stress sx" */
     double *of_cell; /* [k * cells.count + cell] in field k; NaN: no value */
 } ritz_shapes;
 

@@ -245,6 +245,59 @@ static void frames_are_read_back(void **)
     assert_int_equal(rmdir(folder_path("r.frames")), 0);
 }
 
+/* The names of a quantity and of a part may be long and differ at their ends;
+   each has its field, which is read back. */
+static void long_names_of_fields_are_kept(void **)
+{
+#define LONG "a quantity whose name has sixty letters, the last ones too: "
+    RITZ_OWN(ritz_reduced) body = {0};
+    RITZ_OWN(ritz_moving) m = {0};
+    RITZ_OWN(ritz_shapes) frame = {0};
+
+    make_body(&body);
+    for (int64_t k = 0; k < 4; k++)
+        snprintf(body.quantity[0].part[k], RITZ_NAME_SIZE, LONG "%s",
+                 k % 2 ? "sy" : "sx");
+    snprintf(body.quantity[0].name, RITZ_NAME_SIZE, LONG "s");
+    assert_ok(ritz_moving_new(&body, &m));
+    assert_int_equal(m.frame.num_fields, 3);
+    assert_string_equal(m.frame.field[1], LONG "s " LONG "sx");
+    assert_string_equal(m.frame.field[2], LONG "s " LONG "sy");
+    assert_ok(
+        write_series(&ritz_series_format_pvd, &body, folder_path("l.pvd"), 1));
+    assert_ok(ritz_frame_read(folder_path("l.frames/000000.vtu"), &frame));
+    assert_string_equal(frame.field[0], LONG "s");
+    assert_near(frame.of_cell[1], -4.0, 0.0);
+    assert_int_equal(remove(folder_path("l.frames/000000.vtu")), 0);
+    assert_int_equal(rmdir(folder_path("l.frames")), 0);
+}
+
+static bool is_there(const char *name)
+{
+    return access(folder_path(name), F_OK) == 0;
+}
+
+/* Files of the folder that are no frames stay. */
+static void frames_of_a_longer_series_are_removed(void **)
+{
+    RITZ_OWN(ritz_reduced) body = {0};
+    const char *const path = folder_path("s.pvd");
+
+    make_body(&body);
+    assert_ok(write_series(&ritz_series_format_pvd, &body, path, 2));
+    (void)folder_write("s.frames/000007.vtu", "after a gap");
+    (void)folder_write("s.frames/1000000.vtu", "the next after 999999");
+    (void)folder_write("s.frames/000001.png", "a picture");
+    assert_ok(write_series(&ritz_series_format_pvd, &body, path, 1));
+    assert_true(is_there("s.frames/000000.vtu"));
+    assert_true(!is_there("s.frames/000001.vtu"));
+    assert_true(!is_there("s.frames/000007.vtu"));
+    assert_true(!is_there("s.frames/1000000.vtu"));
+    assert_int_equal(remove(folder_path("s.frames/000001.png")), 0);
+    assert_int_equal(remove(folder_path("s.frames/000000.vtu")), 0);
+    assert_int_equal(rmdir(folder_path("s.frames")), 0);
+}
+
 static const char one[] =
     "<VTKFile type=\"UnstructuredGrid\">\n<Piece NumberOfPoints=\"2\" "
     "NumberOfCells=\"1\">\n<DataArray type=\"Float64\" "
@@ -343,6 +396,8 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_place_that_cannot_be_written_is_refused),
     cmocka_unit_test(maxima_are_a_table),
     cmocka_unit_test(frames_are_read_back),
+    cmocka_unit_test(long_names_of_fields_are_kept),
+    cmocka_unit_test(frames_of_a_longer_series_are_removed),
     cmocka_unit_test(other_frames_are_refused),
     cmocka_unit_test(damaged_frames_are_refused),
     cmocka_unit_test(all_allocations_may_fail),
