@@ -16,242 +16,20 @@
  * Macros are not evaluated: commands that generate or change nodes or elements
  * are refused by name. Commands that are not known are ignored.
  */
-#include "formats/cdb.h"
+#include "formats/cdb_lines.h"
+
 #include "base/alloc.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 enum {
-    MOST_FIELDS = 32,   /* of a command, and of a line of a block */
     MOST_TYPES = 10000, /* element types in a file */
     MOST_NODES = 64,    /* of an element */
     SOLID_FIELDS = 11,  /* before the nodes of an element, EBLOCK,,SOLID */
     PLAIN_FIELDS = 5,   /* before the nodes of an element, other EBLOCK */
-    MOST_DIGITS = 60,   /* width of a field */
 };
-
-/* ---- lines --------------------------------------------------------------- */
-
-/* Read the next line, without its line end; false at the end of the file. */
-static bool take_line(ritz_cdb *all, ritz_piece *out, int64_t *number)
-{
-    const ritz_deck_text *top = NULL;
-
-    if (!ritz_deck_next_line(&all->reading))
-        return false;
-    top = ritz_deck_top(&all->reading);
-    *out = (ritz_piece){top->text.line, top->text.line_end - top->text.line};
-    if (out->length > 0 && out->text[out->length - 1] == '\r')
-        out->length--;
-    *number = top->text.number;
-    return true;
-}
-
-static bool is_word(ritz_piece piece, const char *word)
-{
-    return piece.length == (int64_t)strlen(word) &&
-           strncasecmp(piece.text, word, (size_t)piece.length) == 0;
-}
-
-static bool read_whole(ritz_piece piece, int64_t *out)
-{
-    const char *at = piece.text;
-    const char *end = piece.text + piece.length;
-    const bool minus = at < end && *at == '-';
-
-    at += minus;
-    if (!ritz_decimal_scan_whole(&at, end, out) || at != end)
-        return false;
-    *out = minus ? -*out : *out;
-    return true;
-}
-
-/* An empty piece is read as 0. */
-static bool read_real(ritz_piece piece, double *out)
-{
-    ritz_decimal value = {0};
-    const char *at = piece.text;
-
-    if (piece.length > 0 &&
-        !ritz_decimal_scan(&at, piece.text + piece.length, &value))
-        return false;
-    *out = value.value;
-    return at == piece.text + piece.length && isfinite(value.value);
-}
-
-/* The fields of a command, which commas separate. */
-typedef struct cdb_command {
-    int64_t count, line;
-    ritz_piece field[MOST_FIELDS]; /* without blanks; the first is its name */
-} cdb_command;
-
-/* Text after '!' is a comment. Fields beyond MOST_FIELDS are ignored. */
-static void split_command(ritz_piece text, int64_t line, cdb_command *out)
-{
-    const char *stop = memchr(text.text, '!', (size_t)text.length);
-    const char *end = stop ? stop : text.text + text.length;
-    const char *at = text.text;
-
-    *out = (cdb_command){.line = line};
-    while (out->count < MOST_FIELDS) {
-        const char *comma = memchr(at, ',', (size_t)(end - at));
-        const char *to = comma ? comma : end;
-
-        out->field[out->count++] = ritz_piece_trim((ritz_piece){at, to - at});
-        if (!comma)
-            break;
-        at = comma + 1;
-    }
-}
-
-static ritz_piece field_of(const cdb_command *command, int64_t k)
-{
-    return k < command->count ? command->field[k] : (ritz_piece){"", 0};
-}
-
-/* Arguments of %.*s that print at most 40 letters of a piece. */
-#define QUOTED(piece)                                                          \
-    (int)((piece).length < 40 ? (piece).length : 40), (piece).text
-
-static ritz_status take_whole(const ritz_cdb *all, const cdb_command *command,
-                              int64_t k, int64_t *out)
-{
-    const ritz_piece field = field_of(command, k);
-
-    if (!read_whole(field, out))
-        return ritz_cdb_refuse(all, command->line,
-                               "'%.*s' of '%.*s' is not a whole number",
-                               QUOTED(field), QUOTED(command->field[0]));
-    return RITZ_OK;
-}
-
-static ritz_status take_real(const ritz_cdb *all, const cdb_command *command,
-                             int64_t k, double *out)
-{
-    const ritz_piece field = field_of(command, k);
-
-    if (!read_real(field, out))
-        return ritz_cdb_refuse(all, command->line,
-                               "'%.*s' of '%.*s' is not a number",
-                               QUOTED(field), QUOTED(command->field[0]));
-    return RITZ_OK;
-}
-
-/* ---- blocks -------------------------------------------------------------- */
-
-/* A format of Fortran such as "(3i9,6e21.13e3)": a number of fields with whole
-   numbers, then a number of fields with real ones, and the widths of both. */
-typedef struct cdb_form {
-    int64_t wholes, whole_width, reals, real_width;
-} cdb_form;
-
-/* Read a group such as "3i9" or "6e21.13e3", and move `at` to its end. */
-static bool scan_group(const char **at, const char *end, const char *letters,
-                       int64_t *count, int64_t *width)
-{
-    static const char marks[] = ".E"; /* of decimals, of digits of exponents */
-    int64_t unused = 0;
-
-    *count = 1;
-    if (!ritz_decimal_scan_whole(at, end, count))
-        *count = 1;
-    if (*at == end || !strchr(letters, ritz_card_upper(**at)))
-        return false;
-    ++*at;
-    if (!ritz_decimal_scan_whole(at, end, width) || *count < 1 || *width < 1 ||
-        *count > MOST_FIELDS || *width > MOST_DIGITS)
-        return false;
-    for (const char *mark = marks; *mark; mark++)
-        if (*at < end && ritz_card_upper(**at) == *mark) {
-            ++*at;
-            (void)ritz_decimal_scan_whole(at, end, &unused);
-        }
-    return true;
-}
-
-static bool scan_form(ritz_piece line, cdb_form *out)
-{
-    const char *at = line.text;
-    const char *end = line.text + line.length;
-
-    if (line.length == 0 || *at++ != '(' ||
-        !scan_group(&at, end, "I", &out->wholes, &out->whole_width))
-        return false;
-    if (at < end && *at == ',') {
-        at++;
-        if (!scan_group(&at, end, "EFDG", &out->reals, &out->real_width))
-            return false;
-    }
-    return end - at == 1 && *at == ')';
-}
-
-/* Read the format of a block from the line after its command. */
-static ritz_status take_form(ritz_cdb *all, const cdb_command *command,
-                             bool reals, cdb_form *out)
-{
-    ritz_piece line = {"", 0};
-    int64_t number = command->line;
-
-    *out = (cdb_form){0};
-    if (!take_line(all, &line, &number) ||
-        !scan_form(ritz_piece_trim(line), out) || reals != (out->reals > 0))
-        return ritz_cdb_refuse(all, number,
-                               "'%.*s' is not followed by a format such as "
-                               "'%s'",
-                               QUOTED(command->field[0]),
-                               reals ? "(3i9,6e21.13e3)" : "(19i9)");
-    return RITZ_OK;
-}
-
-/* The field from column `from` on, empty if the line ends before it. */
-static ritz_piece cut_field(ritz_piece line, int64_t from, int64_t width)
-{
-    const int64_t at = from < line.length ? from : line.length;
-    const int64_t rest = line.length - at;
-
-    return ritz_piece_trim(
-        (ritz_piece){line.text + at, rest < width ? rest : width});
-}
-
-/* A block ends with a line -1, or with a command N or EN whose number is -1. */
-static bool ends_block(ritz_piece line)
-{
-    const ritz_piece text = ritz_piece_trim(line);
-    cdb_command command = {0};
-
-    if (text.length == 0)
-        return false;
-    split_command(text, 0, &command);
-    return is_word(command.field[0], "-1") || is_word(command.field[0], "N") ||
-           is_word(command.field[0], "EN");
-}
-
-/* Read the whole numbers of a line, blank ones as 0. *count is the number of
-   fields up to the last that is not blank. */
-static ritz_status take_wholes(const ritz_cdb *all, const cdb_form *form,
-                               ritz_piece line, int64_t number, int64_t *out,
-                               int64_t *count)
-{
-    *count = 0;
-    for (int64_t k = 0; k < form->wholes; k++) {
-        const ritz_piece field =
-            cut_field(line, k * form->whole_width, form->whole_width);
-
-        out[k] = 0;
-        if (field.length == 0)
-            continue;
-        if (!read_whole(field, &out[k]))
-            return ritz_cdb_refuse(all, number, "'%.*s' is not a whole number",
-                                   QUOTED(field));
-        *count = k + 1;
-    }
-    return RITZ_OK;
-}
 
 /* ---- nodes --------------------------------------------------------------- */
 
@@ -266,34 +44,35 @@ static ritz_status add_node(ritz_cdb *all, const ritz_cdb_node *node)
 }
 
 /* Read coordinate k (0 to 2) or angle k - 3 of a node. */
-static ritz_status take_real_field(const ritz_cdb *all, const cdb_form *form,
-                                   ritz_piece line, int64_t k,
-                                   ritz_cdb_node *node)
+static ritz_status take_real_field(const ritz_cdb *all,
+                                   const ritz_cdb_form *form, ritz_piece line,
+                                   int64_t k, ritz_cdb_node *node)
 {
-    const ritz_piece field =
-        cut_field(line, form->wholes * form->whole_width + k * form->real_width,
-                  form->real_width);
+    const ritz_piece field = ritz_cdb_cut_field(
+        line, form->wholes * form->whole_width + k * form->real_width,
+        form->real_width);
     double *to = k < 3 ? &node->x[k] : &node->angle[k - 3];
 
-    if (!read_real(field, to))
+    if (!ritz_cdb_read_real(field, to))
         return ritz_cdb_refuse(all, node->line, "'%.*s' is not a number",
-                               QUOTED(field));
+                               RITZ_CDB_QUOTED(field));
     return RITZ_OK;
 }
 
-static ritz_status take_nodes(ritz_cdb *all, const cdb_command *command)
+static ritz_status take_nodes(ritz_cdb *all, const ritz_cdb_command *command)
 {
     enum { REALS = 6 }; /* X Y Z THXY THYZ THZX */
-    cdb_form form = {0};
+    ritz_cdb_form form = {0};
     ritz_piece line = {"", 0};
     ritz_cdb_node node = {0};
-    int64_t whole[MOST_FIELDS], count = 0;
+    int64_t whole[RITZ_CDB_MOST_FIELDS], count = 0;
 
-    RITZ_CHECK(take_form(all, command, true, &form));
-    while (take_line(all, &line, &node.line)) {
-        if (ends_block(line))
+    RITZ_CHECK(ritz_cdb_take_form(all, command, true, &form));
+    while (ritz_cdb_take_line(all, &line, &node.line)) {
+        if (ritz_cdb_ends_block(line))
             return RITZ_OK;
-        RITZ_CHECK(take_wholes(all, &form, line, node.line, whole, &count));
+        RITZ_CHECK(
+            ritz_cdb_take_wholes(all, &form, line, node.line, whole, &count));
         node.id = whole[0];
         for (int64_t k = 0; k < form.reals && k < REALS; k++)
             RITZ_CHECK(take_real_field(all, &form, line, k, &node));
@@ -305,15 +84,16 @@ static ritz_status take_nodes(ritz_cdb *all, const cdb_command *command)
 /* N has one of the forms
    N,R5.3,LOC,NODE,X,Y,Z   N,R5.3,ANG,NODE,THXY,THYZ,THZX   N,NODE,X,Y,Z,THXY,..
  */
-static ritz_status take_node(ritz_cdb *all, const cdb_command *command)
+static ritz_status take_node(ritz_cdb *all, const ritz_cdb_command *command)
 {
-    const ritz_piece form = field_of(command, 1);
+    const ritz_piece form = ritz_cdb_field(command, 1);
     const bool coded = form.length > 0 && ritz_card_upper(form.text[0]) == 'R';
-    const bool angles = coded && is_word(field_of(command, 2), "ANG");
+    const bool angles =
+        coded && ritz_cdb_is_word(ritz_cdb_field(command, 2), "ANG");
     const int64_t first = coded ? 3 : 1;
     ritz_cdb_node node = {.line = command->line};
 
-    RITZ_CHECK(take_whole(all, command, first, &node.id));
+    RITZ_CHECK(ritz_cdb_take_whole(all, command, first, &node.id));
     if (node.id == -1)
         return RITZ_OK;
     if (all->turned && !coded)
@@ -326,10 +106,11 @@ static ritz_status take_node(ritz_cdb *all, const cdb_command *command)
             all, command->line,
             "angles of node %" PRId64 " do not follow its position", node.id);
     for (int64_t k = 0; k < 3; k++) {
-        RITZ_CHECK(take_real(all, command, first + 1 + k,
-                             angles ? &node.angle[k] : &node.x[k]));
+        RITZ_CHECK(ritz_cdb_take_real(all, command, first + 1 + k,
+                                      angles ? &node.angle[k] : &node.x[k]));
         if (!coded)
-            RITZ_CHECK(take_real(all, command, first + 4 + k, &node.angle[k]));
+            RITZ_CHECK(ritz_cdb_take_real(all, command, first + 4 + k,
+                                          &node.angle[k]));
     }
     if (!angles)
         return add_node(all, &node);
@@ -339,13 +120,14 @@ static ritz_status take_node(ritz_cdb *all, const cdb_command *command)
 
 /* ---- elements ------------------------------------------------------------ */
 
-static ritz_status take_type(ritz_cdb *all, const cdb_command *command)
+static ritz_status take_type(ritz_cdb *all, const ritz_cdb_command *command)
 {
-    ritz_cdb_type type = {.kind = ritz_cdb_find_kind(field_of(command, 2))};
+    ritz_cdb_type type = {.kind =
+                              ritz_cdb_find_kind(ritz_cdb_field(command, 2))};
     ritz_cdb_type *there = NULL;
     int64_t at = 0;
 
-    RITZ_CHECK(take_whole(all, command, 1, &type.number));
+    RITZ_CHECK(ritz_cdb_take_whole(all, command, 1, &type.number));
     there = ritz_cdb_find_type(all, type.number);
     if (there) {
         *there = type;
@@ -365,14 +147,14 @@ static ritz_status take_type(ritz_cdb *all, const cdb_command *command)
 
 /* KEYOPT,TYPE,3,VALUE chooses the directions that nodes of some elements have.
    Other options are ignored. */
-static ritz_status take_option(ritz_cdb *all, const cdb_command *command)
+static ritz_status take_option(ritz_cdb *all, const ritz_cdb_command *command)
 {
     int64_t number = 0, which = 0, value = 0;
     ritz_cdb_type *type = NULL;
 
-    if (!read_whole(field_of(command, 1), &number) ||
-        !read_whole(field_of(command, 2), &which) || which != 3 ||
-        !read_whole(field_of(command, 3), &value))
+    if (!ritz_cdb_read_whole(ritz_cdb_field(command, 1), &number) ||
+        !ritz_cdb_read_whole(ritz_cdb_field(command, 2), &which) ||
+        which != 3 || !ritz_cdb_read_whole(ritz_cdb_field(command, 3), &value))
         return RITZ_OK;
     type = ritz_cdb_find_type(all, number);
     if (type)
@@ -380,9 +162,10 @@ static ritz_status take_option(ritz_cdb *all, const cdb_command *command)
     return RITZ_OK;
 }
 
-static ritz_status take_open_type(ritz_cdb *all, const cdb_command *command)
+static ritz_status take_open_type(ritz_cdb *all,
+                                  const ritz_cdb_command *command)
 {
-    return take_whole(all, command, 1, &all->open_type);
+    return ritz_cdb_take_whole(all, command, 1, &all->open_type);
 }
 
 static ritz_status add_joined(ritz_cdb *all, int64_t node)
@@ -414,18 +197,18 @@ static ritz_status begin_element(ritz_cdb *all, int64_t type, int64_t line,
 }
 
 /* Read the `due` nodes that the last element lacks from the next lines. */
-static ritz_status continue_element(ritz_cdb *all, const cdb_form *form,
+static ritz_status continue_element(ritz_cdb *all, const ritz_cdb_form *form,
                                     int64_t due)
 {
     const int64_t begun = all->element[all->num_elements - 1].line;
-    int64_t whole[MOST_FIELDS], count = 0, line = 0;
+    int64_t whole[RITZ_CDB_MOST_FIELDS], count = 0, line = 0;
     ritz_piece text = {"", 0};
 
     while (due > 0) {
-        if (!take_line(all, &text, &line))
+        if (!ritz_cdb_take_line(all, &text, &line))
             return ritz_cdb_refuse(all, begun,
                                    "nodes of this element are missing");
-        RITZ_CHECK(take_wholes(all, form, text, line, whole, &count));
+        RITZ_CHECK(ritz_cdb_take_wholes(all, form, text, line, whole, &count));
         if (count == 0)
             return ritz_cdb_refuse(all, line,
                                    "nodes of the element above are missing");
@@ -435,7 +218,7 @@ static ritz_status continue_element(ritz_cdb *all, const cdb_form *form,
     return RITZ_OK;
 }
 
-static ritz_status take_solid(ritz_cdb *all, const cdb_form *form,
+static ritz_status take_solid(ritz_cdb *all, const ritz_cdb_form *form,
                               const int64_t *whole, int64_t count, int64_t line)
 {
     const int64_t nodes = count > 8 ? whole[8] : 0;
@@ -453,18 +236,18 @@ static ritz_status take_solid(ritz_cdb *all, const cdb_form *form,
     return continue_element(all, form, nodes - here);
 }
 
-static ritz_status take_elements(ritz_cdb *all, const cdb_command *command)
+static ritz_status take_elements(ritz_cdb *all, const ritz_cdb_command *command)
 {
-    const bool solid = is_word(field_of(command, 2), "SOLID");
-    int64_t whole[MOST_FIELDS], count = 0, line = 0;
+    const bool solid = ritz_cdb_is_word(ritz_cdb_field(command, 2), "SOLID");
+    int64_t whole[RITZ_CDB_MOST_FIELDS], count = 0, line = 0;
     ritz_piece text = {"", 0};
-    cdb_form form = {0};
+    ritz_cdb_form form = {0};
 
-    RITZ_CHECK(take_form(all, command, false, &form));
-    while (take_line(all, &text, &line)) {
-        if (ends_block(text))
+    RITZ_CHECK(ritz_cdb_take_form(all, command, false, &form));
+    while (ritz_cdb_take_line(all, &text, &line)) {
+        if (ritz_cdb_ends_block(text))
             return RITZ_OK;
-        RITZ_CHECK(take_wholes(all, &form, text, line, whole, &count));
+        RITZ_CHECK(ritz_cdb_take_wholes(all, &form, text, line, whole, &count));
         RITZ_CHECK(solid ? take_solid(all, &form, whole, count, line)
                          : begin_element(all, all->open_type, line, whole,
                                          PLAIN_FIELDS, count));
@@ -474,14 +257,16 @@ static ritz_status take_elements(ritz_cdb *all, const cdb_command *command)
 
 /* EN and E define single elements. These are counted, but not read.
    EN,R5.5,ATTR,-1 ends a block and defines none. */
-static ritz_status count_element(ritz_cdb *all, const cdb_command *command)
+static ritz_status count_element(ritz_cdb *all, const ritz_cdb_command *command)
 {
-    const bool attributes = is_word(field_of(command, 2), "ATTR");
+    const bool attributes =
+        ritz_cdb_is_word(ritz_cdb_field(command, 2), "ATTR");
     int64_t nodes = 0;
 
-    if (attributes && read_whole(field_of(command, 3), &nodes) && nodes == -1)
+    if (attributes && ritz_cdb_read_whole(ritz_cdb_field(command, 3), &nodes) &&
+        nodes == -1)
         return RITZ_OK;
-    all->num_strange += attributes || is_word(command->field[0], "E");
+    all->num_strange += attributes || ritz_cdb_is_word(command->field[0], "E");
     return RITZ_OK;
 }
 
@@ -494,43 +279,44 @@ static uint8_t mask_of(ritz_piece label)
                                         "ROTX", "ROTY", "ROTZ"};
 
     for (unsigned k = 0; k < sizeof names / sizeof *names; k++)
-        if (is_word(label, names[k]))
+        if (ritz_cdb_is_word(label, names[k]))
             return (uint8_t)(1U << (k + 1));
-    return is_word(label, "ALL") ? 0x7e : 0;
+    return ritz_cdb_is_word(label, "ALL") ? 0x7e : 0;
 }
 
 /* D,NODE,LABEL,VALUE,VALUE2,LAST,STEP,LABEL,..., where NODE may be ALL. */
-static ritz_status take_support(ritz_cdb *all, const cdb_command *command)
+static ritz_status take_support(ritz_cdb *all, const ritz_cdb_command *command)
 {
     enum { VALUE = 3, LAST = 5, LABELS = 7, MOST_LABELS = 5 };
-    const bool everywhere = is_word(field_of(command, 1), "ALL");
+    const bool everywhere = ritz_cdb_is_word(ritz_cdb_field(command, 1), "ALL");
     ritz_cdb_support support = {.line = command->line};
     double value = 0.0;
 
-    support.mask = mask_of(field_of(command, 2));
+    support.mask = mask_of(ritz_cdb_field(command, 2));
     for (int64_t k = LABELS; k < LABELS + MOST_LABELS; k++)
-        support.mask |= mask_of(field_of(command, k));
+        support.mask |= mask_of(ritz_cdb_field(command, k));
     if (support.mask == 0)
         return RITZ_OK;
-    if (field_of(command, LAST).length > 0 || (everywhere && all->chosen))
+    if (ritz_cdb_field(command, LAST).length > 0 || (everywhere && all->chosen))
         return ritz_cdb_refuse(all, command->line,
                                "'D' holds nodes of a range or selection, which "
                                "is not read: write the model by CDWRITE");
     if (!everywhere)
-        RITZ_CHECK(take_whole(all, command, 1, &support.node));
+        RITZ_CHECK(ritz_cdb_take_whole(all, command, 1, &support.node));
     support.imposed =
-        !read_real(field_of(command, VALUE), &value) || value != 0.0;
+        !ritz_cdb_read_real(ritz_cdb_field(command, VALUE), &value) ||
+        value != 0.0;
     RITZ_CHECK_ROOM(all->support, all->num_supports, all->supports_room);
     all->support[all->num_supports++] = support;
     return RITZ_OK;
 }
 
-static ritz_status take_tie(ritz_cdb *all, const cdb_command *command)
+static ritz_status take_tie(ritz_cdb *all, const ritz_cdb_command *command)
 {
     ritz_cdb_tie tie = {.line = command->line};
 
     snprintf(tie.name, sizeof tie.name, "%.*s %" PRId64,
-             QUOTED(command->field[0]), all->num_ties + 1);
+             RITZ_CDB_QUOTED(command->field[0]), all->num_ties + 1);
     RITZ_CHECK_ROOM(all->tie, all->num_ties, all->ties_room);
     all->tie[all->num_ties++] = tie;
     return RITZ_OK;
@@ -540,31 +326,35 @@ static ritz_status take_tie(ritz_cdb *all, const cdb_command *command)
 
 /* CSYS,N activates coordinate system N, of which 0 is the global one. LOCAL,
    CLOCAL, CS and CSKP activate the system that they define. */
-static ritz_status take_system(ritz_cdb *all, const cdb_command *command)
+static ritz_status take_system(ritz_cdb *all, const ritz_cdb_command *command)
 {
     int64_t number = 0;
 
-    all->turned = !is_word(command->field[0], "CSYS") ||
-                  !read_whole(field_of(command, 1), &number) || number != 0;
+    all->turned = !ritz_cdb_is_word(command->field[0], "CSYS") ||
+                  !ritz_cdb_read_whole(ritz_cdb_field(command, 1), &number) ||
+                  number != 0;
     return RITZ_OK;
 }
 
 /* NSEL,ALL and ALLSEL select all nodes; the other commands select some. */
-static ritz_status choose_nodes(ritz_cdb *all, const cdb_command *command)
+static ritz_status choose_nodes(ritz_cdb *all, const ritz_cdb_command *command)
 {
-    const ritz_piece what = field_of(command, 1);
-    const bool whole = is_word(command->field[0], "ALLSEL");
+    const ritz_piece what = ritz_cdb_field(command, 1);
+    const bool whole = ritz_cdb_is_word(command->field[0], "ALLSEL");
 
-    all->chosen = is_word(command->field[0], "CMSEL") ||
-                  !(is_word(what, "ALL") || (whole && what.length == 0));
+    all->chosen =
+        ritz_cdb_is_word(command->field[0], "CMSEL") ||
+        !(ritz_cdb_is_word(what, "ALL") || (whole && what.length == 0));
     return RITZ_OK;
 }
 
 /* *IF,...,THEN begins a condition and *ENDIF ends it. */
-static ritz_status take_condition(ritz_cdb *all, const cdb_command *command)
+static ritz_status take_condition(ritz_cdb *all,
+                                  const ritz_cdb_command *command)
 {
-    if (is_word(command->field[0], "*IF"))
-        all->conditions += is_word(command->field[command->count - 1], "THEN");
+    if (ritz_cdb_is_word(command->field[0], "*IF"))
+        all->conditions +=
+            ritz_cdb_is_word(command->field[command->count - 1], "THEN");
     else
         all->conditions -= all->conditions > 0;
     return RITZ_OK;
@@ -573,7 +363,7 @@ static ritz_status take_condition(ritz_cdb *all, const cdb_command *command)
 /* The name of a command, and the function that reads it. */
 typedef struct cdb_verb {
     const char *name;
-    ritz_status (*take)(ritz_cdb *all, const cdb_command *command);
+    ritz_status (*take)(ritz_cdb *all, const ritz_cdb_command *command);
     bool adds; /* it adds nodes, elements, supports or constraints, which is
                   refused within *IF */
 } cdb_verb;
@@ -617,19 +407,19 @@ static const char *const refused[] = {
     "NSCALE",  "TRANSFER", "NUMMRG", "NUMCMP", "*DO",    "*REPEAT", "*USE",
     "/INPUT",  "CDREAD",   "VMESH",  "AMESH",  "LMESH",  "DDELE"};
 
-static ritz_status take_command(ritz_cdb *all, const cdb_command *command)
+static ritz_status take_command(ritz_cdb *all, const ritz_cdb_command *command)
 {
     const ritz_piece name = command->field[0];
 
     for (size_t k = 0; k < sizeof refused / sizeof *refused; k++)
-        if (is_word(name, refused[k]))
+        if (ritz_cdb_is_word(name, refused[k]))
             return ritz_cdb_refuse(all, command->line,
                                    "'%s' changes the model, and Ritz does not "
                                    "evaluate it: let ANSYS write the model by "
                                    "CDWRITE",
                                    refused[k]);
     for (size_t k = 0; k < sizeof verbs / sizeof *verbs; k++) {
-        if (!is_word(name, verbs[k].name))
+        if (!ritz_cdb_is_word(name, verbs[k].name))
             continue;
         if (verbs[k].adds && all->conditions > 0)
             return ritz_cdb_refuse(all, command->line,
@@ -658,13 +448,13 @@ static ritz_status parse_cdb(const char *path, const char *bytes, int64_t size,
 
     all.reading.files = &all.files;
     RITZ_CHECK(ritz_deck_begin(&all.reading, path, bytes, size, folder));
-    while (take_line(&all, &line, &number)) {
+    while (ritz_cdb_take_line(&all, &line, &number)) {
         const ritz_piece text = ritz_piece_trim(line);
-        cdb_command command = {0};
+        ritz_cdb_command command = {0};
 
         if (text.length == 0 || text.text[0] == '!' || text.text[0] == '(')
             continue;
-        split_command(text, number, &command);
+        ritz_cdb_split_command(text, number, &command);
         RITZ_CHECK(take_command(&all, &command));
     }
     return ritz_cdb_build(&all, out);
@@ -672,7 +462,7 @@ static ritz_status parse_cdb(const char *path, const char *bytes, int64_t size,
 
 static bool is_one_of(ritz_piece text, const char *const *words)
 {
-    while (*words && !is_word(text, *words))
+    while (*words && !ritz_cdb_is_word(text, *words))
         words++;
     return *words != NULL;
 }
@@ -689,9 +479,9 @@ static bool is_cdb(const char *bytes, int64_t size)
     ritz_lines text = {.at = bytes, .end = bytes + size};
 
     while (text.number < LINES && ritz_lines_next(&text)) {
-        cdb_command command = {0};
+        ritz_cdb_command command = {0};
 
-        split_command(
+        ritz_cdb_split_command(
             ritz_piece_trim((ritz_piece){text.line, text.line_end - text.line}),
             0, &command);
         if (is_one_of(command.field[0], own))
