@@ -3,6 +3,7 @@
  * that the same files always give the same bytes. The archive is built in
  * memory, as libarchive 3.6 does not free its compressor if a write fails.
  */
+#include "base/alloc.h"
 #include "formats/fmu.h"
 #include "formats/sink.h"
 
@@ -63,9 +64,16 @@ static la_ssize_t append_bytes(struct archive *a, void *to, const void *bytes,
     return -1;
 }
 
-static ritz_status put_files(FILE *to, const char *path,
-                             const ritz_zip_files *files)
+typedef struct named_files {
+    const char *path; /* of the archive */
+    const ritz_zip_files *files;
+} named_files;
+
+static ritz_status put_files(FILE *to, const void *what)
 {
+    const named_files *all = what;
+    const ritz_zip_files *files = all->files;
+    const char *path = all->path;
     RITZ_OWN(zip_writer) a = archive_write_new();
 
     RITZ_REFUSE_IF(!a, RITZ_ERR_MEMORY, "no memory for an archive");
@@ -81,36 +89,27 @@ static ritz_status put_files(FILE *to, const char *path,
     return RITZ_OK;
 }
 
-/* The archive in memory. */
-typedef struct zip_bytes {
-    char *at;
-    size_t size;
-} zip_bytes;
-
-static void zip_bytes_free(zip_bytes *bytes)
-{
-    free(bytes->at);
-    *bytes = (zip_bytes){0};
-}
+typedef struct held_zip {
+    const char *bytes;
+    int64_t size;
+} held_zip;
 
 static ritz_status copy_bytes(FILE *file, const void *what)
 {
-    const zip_bytes *bytes = what;
+    const held_zip *zip = what;
 
-    fwrite(bytes->at, 1, bytes->size, file);
+    fwrite(zip->bytes, 1, (size_t)zip->size, file);
     return RITZ_OK;
 }
 
 ritz_status ritz_archive_write(const char *path, const ritz_zip_files *files)
 {
-    RITZ_OWN(zip_bytes) bytes = {0};
-    FILE *file = open_memstream(&bytes.at, &bytes.size);
-    ritz_status status = RITZ_OK;
+    const named_files all = {path, files};
+    RITZ_OWN_ARRAY char *bytes = NULL;
+    held_zip zip = {0};
 
-    RITZ_REFUSE_IF(!file, RITZ_ERR_MEMORY, "no memory for an archive");
-    status = put_files(file, path, files);
-    RITZ_REFUSE_IF(fclose(file) != 0 && status == RITZ_OK, RITZ_ERR_MEMORY,
-                   "no memory for an archive");
-    RITZ_CHECK(status);
-    return ritz_sink_write(path, copy_bytes, &bytes);
+    RITZ_CHECK(
+        ritz_sink_hold(put_files, &all, "an archive", &bytes, &zip.size));
+    zip.bytes = bytes;
+    return ritz_sink_write(path, copy_bytes, &zip);
 }

@@ -1,5 +1,6 @@
 #include "formats/certificate.h"
 #include "base/text.h"
+#include "formats/sink.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -119,9 +120,17 @@ static void put_model(FILE *file, const certified *c)
         fputs("errors: neither measured nor estimated\n", file);
 }
 
-static void put_certificate(FILE *file, const ritz_export_object *object,
-                            const ritz_stamp *stamp)
+typedef struct certificate_of {
+    const ritz_export_object *object;
+    const ritz_stamp *stamp; /* NULL: not known */
+} certificate_of;
+
+static ritz_status put_certificate(FILE *file, const void *what)
 {
+    const certificate_of *all = what;
+    const ritz_export_object *object = all->object;
+    const ritz_stamp *stamp = all->stamp;
+
     if (object->reduced || object->states) {
         const certified c = find_certified(object);
 
@@ -141,27 +150,15 @@ static void put_certificate(FILE *file, const ritz_export_object *object,
         put_clean(file, "command: ", stamp->command);
         fputc('\n', file);
     }
+    return RITZ_OK;
 }
 
 ritz_status ritz_certificate(const ritz_export_object *object,
                              const ritz_stamp *stamp, char **out)
 {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *file = open_memstream(&text, &size);
-    bool whole = file != NULL;
+    const certificate_of all = {object, stamp};
 
-    if (file) {
-        put_certificate(file, object, stamp);
-        whole = !ferror(file);
-        whole = fclose(file) == 0 && whole;
-    }
-    if (!whole) {
-        free(text);
-        return ritz_fail(RITZ_ERR_MEMORY, "no memory for the certificate");
-    }
-    *out = text;
-    return RITZ_OK;
+    return ritz_sink_hold(put_certificate, &all, "the certificate", out, NULL);
 }
 
 /* Number of bytes, of the `length` that a line has left, that fit into one

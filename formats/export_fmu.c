@@ -106,46 +106,38 @@ static void name_model(const char *path, char out[RITZ_NAME_SIZE])
         out[length - (sizeof ending - 1)] = '\0';
 }
 
-/* Make documentation/index.html, which shows the certificate. */
-static ritz_status make_page(const char *name, char *certificate, char **out,
-                             int64_t *length)
+typedef struct fmu_page_text {
+    const char *name;
+    char *certificate;
+} fmu_page_text;
+
+/* documentation/index.html, which shows the certificate. */
+static ritz_status put_page(FILE *file, const void *what)
 {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *file = open_memstream(&text, &size);
-    bool whole = file != NULL;
+    const fmu_page_text *page = what;
 
-    if (file) {
-        fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n"
-              "<title>",
-              file);
-        ritz_xml_put(file, name);
-        fputs("</title>\n<h1>", file);
-        ritz_xml_put(file, name);
-        fputs("</h1>\n<p>A linear model. In co-simulation inputs are held over "
-              "each step, and motion is propagated without an error but "
-              "rounding.</p>\n<pre>\n",
-              file);
-        for (char *line = certificate; *line;) {
-            char *end = line + strcspn(line, "\n");
-            const char last = *end;
+    fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n"
+          "<title>",
+          file);
+    ritz_xml_put(file, page->name);
+    fputs("</title>\n<h1>", file);
+    ritz_xml_put(file, page->name);
+    fputs(
+        "</h1>\n<p>A linear model. In co-simulation inputs are held over each "
+        "step, and motion is propagated without an error but rounding.</p>\n"
+        "<pre>\n",
+        file);
+    for (char *line = page->certificate; *line;) {
+        char *end = line + strcspn(line, "\n");
+        const char last = *end;
 
-            *end = '\0';
-            ritz_xml_put(file, line);
-            fputc('\n', file);
-            *end = last;
-            line = end + (last == '\n');
-        }
-        fputs("</pre>\n</html>\n", file);
-        whole = !ferror(file);
-        whole = fclose(file) == 0 && whole;
+        *end = '\0';
+        ritz_xml_put(file, line);
+        fputc('\n', file);
+        *end = last;
+        line = end + (last == '\n');
     }
-    if (!whole) {
-        free(text);
-        return ritz_fail(RITZ_ERR_MEMORY, "no memory for a page");
-    }
-    *out = text;
-    *length = (int64_t)size;
+    fputs("</pre>\n</html>\n", file);
     return RITZ_OK;
 }
 
@@ -195,7 +187,9 @@ static ritz_status make_parts(const ritz_export_object *object,
     RITZ_CHECK(ritz_fmu_of(object, &p->fmu));
     RITZ_CHECK(ritz_certificate(object, request->stamp, &p->certificate));
     name_model(request->output, p->name);
-    RITZ_CHECK(make_page(p->name, p->certificate, &p->page, &p->page_size));
+    RITZ_CHECK(ritz_sink_hold(put_page,
+                              &(fmu_page_text){p->name, p->certificate},
+                              "a page", &p->page, &p->page_size));
     memset(p->token, '0', RITZ_DIGEST_SIZE - 1);
     RITZ_CHECK(make_texts(request, p));
     RITZ_CHECK(find_token(p, p->token));

@@ -349,8 +349,16 @@ static void put_structure(const fmu_page *p)
     fputs("  </ModelStructure>\n", p->file);
 }
 
-static void put_page(FILE *file, const ritz_fmu *fmu, const ritz_fmu_text *text)
+typedef struct fmu_described {
+    const ritz_fmu *fmu;
+    const ritz_fmu_text *text;
+} fmu_described;
+
+static ritz_status put_page(FILE *file, const void *what)
 {
+    const fmu_described *all = what;
+    const ritz_fmu *fmu = all->fmu;
+    const ritz_fmu_text *text = all->text;
     const int64_t output = 1 + fmu->num_inputs;
     const int64_t state = output + fmu->num_outputs;
     const fmu_page p = {
@@ -365,26 +373,13 @@ static void put_page(FILE *file, const ritz_fmu *fmu, const ritz_fmu_text *text)
     put_variables(&p);
     put_structure(&p);
     fputs("</fmiModelDescription>\n", file);
+    return RITZ_OK;
 }
 
 ritz_status ritz_fmu_describe(const ritz_fmu *fmu, const ritz_fmu_text *text,
                               char **out, int64_t *length)
 {
-    char *page_text = NULL;
-    size_t size = 0;
-    FILE *file = open_memstream(&page_text, &size);
-    bool whole = file != NULL;
+    const fmu_described all = {fmu, text};
 
-    if (file) {
-        put_page(file, fmu, text);
-        whole = !ferror(file);
-        whole = fclose(file) == 0 && whole;
-    }
-    if (!whole) {
-        free(page_text);
-        return ritz_fail(RITZ_ERR_MEMORY, "no memory for a model description");
-    }
-    *out = page_text;
-    *length = (int64_t)size;
-    return RITZ_OK;
+    return ritz_sink_hold(put_page, &all, "a model description", out, length);
 }

@@ -8,6 +8,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "formats/fmu.h"
+#include "formats/sink.h"
 #include "simulate/motion.h"
 
 #include <complex.h>
@@ -342,10 +343,10 @@ ritz_status ritz_fmu_of(const ritz_export_object *object, ritz_fmu *out)
 
 /* ---- bytes -------------------------------------------------------------- */
 
-static ritz_status fail_memory(void)
-{
-    return ritz_fail(RITZ_ERR_MEMORY, "no memory for the numbers");
-}
+typedef struct fmu_numbers {
+    const ritz_fmu *fmu;
+    const char *token;
+} fmu_numbers;
 
 static void put_words(FILE *file, const ritz_fmu *fmu)
 {
@@ -367,13 +368,14 @@ static void put_dense(FILE *file, const ritz_dense *A)
         fwrite(A->val, sizeof *A->val, (size_t)(A->nrow * A->ncol), file);
 }
 
-static void put_model(FILE *file, const ritz_fmu *fmu,
-                      const char token[RITZ_DIGEST_SIZE])
+static ritz_status put_model(FILE *file, const void *what)
 {
     static const char head[16] = "RITZFMU1"; /* room for the hash, set later */
+    const fmu_numbers *all = what;
+    const ritz_fmu *fmu = all->fmu;
 
     fwrite(head, 1, sizeof head, file);
-    fwrite(token, 1, RITZ_DIGEST_SIZE - 1, file);
+    fwrite(all->token, 1, RITZ_DIGEST_SIZE - 1, file);
     put_words(file, fmu);
     for (int64_t k = 0; k < fmu->num_blocks; k++)
         put_dense(file, &fmu->block[k]);
@@ -381,6 +383,7 @@ static void put_model(FILE *file, const ritz_fmu *fmu,
     put_dense(file, &fmu->C);
     put_dense(file, &fmu->D);
     fwrite(fmu->nominal, sizeof *fmu->nominal, (size_t)fmu->num_states, file);
+    return RITZ_OK;
 }
 
 ritz_status ritz_fmu_numbers(const ritz_fmu *fmu,
@@ -388,25 +391,15 @@ ritz_status ritz_fmu_numbers(const ritz_fmu *fmu,
                              unsigned char **bytes, int64_t *size)
 {
     enum { AT_HASH = 8, AT_TOKEN = 16 };
-    char *text = NULL;
-    size_t length = 0;
-    FILE *file = open_memstream(&text, &length);
+    const fmu_numbers all = {fmu, token};
     uint64_t hash = 0xcbf29ce484222325U; /* [FowlerNollVo2019] */
-    bool whole = file != NULL;
+    char *text = NULL;
 
-    if (file) {
-        put_model(file, fmu, token);
-        whole = !ferror(file);
-        whole = fclose(file) == 0 && whole;
-    }
-    if (!whole) {
-        free(text);
-        return fail_memory();
-    }
-    for (size_t k = AT_TOKEN; k < length; k++)
+    RITZ_CHECK(
+        ritz_sink_hold(put_model, &all, "the numbers of an FMU", &text, size));
+    for (int64_t k = AT_TOKEN; k < *size; k++)
         hash = (hash ^ (unsigned char)text[k]) * 0x100000001b3U;
     memcpy(text + AT_HASH, &hash, sizeof hash);
     *bytes = (unsigned char *)text;
-    *size = (int64_t)length;
     return RITZ_OK;
 }

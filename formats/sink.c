@@ -57,6 +57,27 @@ ritz_status ritz_sink_write(const char *path, ritz_sink_writer *write,
     return ritz_draft_publish(&draft);
 }
 
+ritz_status ritz_sink_hold(ritz_sink_writer *write, const void *what,
+                           const char *name, char **out, int64_t *size)
+{
+    RITZ_OWN_ARRAY char *text = NULL;
+    size_t length = 0;
+    FILE *file = open_memstream(&text, &length);
+    ritz_status status = RITZ_OK;
+    bool failed = false;
+
+    RITZ_REFUSE_IF(!file, RITZ_ERR_MEMORY, "no memory for %s", name);
+    status = write(file, what);
+    failed = ferror(file);
+    failed = fclose(file) != 0 || failed;
+    RITZ_CHECK(status);
+    RITZ_REFUSE_IF(failed, RITZ_ERR_MEMORY, "no memory for %s", name);
+    if (size)
+        *size = (int64_t)length;
+    RITZ_MOVE(*out, text);
+    return RITZ_OK;
+}
+
 ritz_status ritz_sink_check(const ritz_matrix *m)
 {
     for (int64_t j = 0; j < m->A.ncol; j++)

@@ -25,6 +25,17 @@ ritz_status ritz_sink_fill_h5(const ritz_draft *draft,
 ritz_status ritz_sink_write(const char *path, ritz_sink_writer *write,
                             const void *what);
 
+/**
+ * What @p write puts into a file, in memory.
+ *
+ * @param[in]  name  what it is, for the sentence: "an archive"
+ * @param[out] out   the caller frees it; a NUL follows its last byte
+ * @param[out] size  of it without the NUL; NULL: not wanted
+ * @return RITZ_ERR_MEMORY; what @p write says
+ */
+ritz_status ritz_sink_hold(ritz_sink_writer *write, const void *what,
+                           const char *name, char **out, int64_t *size);
+
 /** Fill a draft with OUTPUT4, as ritz_output4_write() does. */
 ritz_status ritz_output4_fill(const ritz_draft *draft, int64_t count,
                               const ritz_matrix *matrix,
