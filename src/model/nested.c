@@ -34,7 +34,8 @@ static ritz_status check_order(const ritz_reduced *in, int64_t order)
 {
     RITZ_REFUSE_IF(in->nested.smallest == 0, RITZ_ERR_ARGUMENT,
                    "it is not nested: its %" PRId64
-                   " columns are one model, and some of them are none",
+                   " columns are one model, and fewer of them are none; "
+                   "ritz-fit writes nested files",
                    in->K.ncol);
     RITZ_REFUSE_IF(
         order < in->nested.smallest || order > in->K.ncol, RITZ_ERR_ARGUMENT,
