@@ -415,7 +415,8 @@ static ritz_status say_mode(const effector *e, int64_t k,
     case FIT_NONE:
         return ritz_export_say(report,
                                "warning: mode %" PRId64 ", %.6g Hz, is left "
-                               "out: it twists as it moves (|h.p| is %.2g of "
+                               "out: it pushes the hub along an axis and turns "
+                               "it about the same one (|h.p| is %.2g of "
                                "|h||p|), which no effector does",
                                k + 1, e->hertz, e->skew);
     default:
