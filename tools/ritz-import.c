@@ -66,7 +66,8 @@ int main(int argc, char **argv)
         CLI_LIST("recovery", &given.recovery, "NAME=F[,KIND]",
                  "rows S of y = S u: stress, force, displacement, ..."),
         CLI_LIST("recovery-rows", &given.recovery_rows, "NAME=FILE",
-                 "what they are: a line each, or a .pch with TES1, TEF1, TUG1"),
+                 "element and component of these rows, a line as '12 sx' for "
+                 "each, or a .pch with TES1, TEF1, TUG1"),
         CLI_LIST("damper", &given.damper, "NAME=GRID:COMP[,GRID:COMP]*C[*K]",
                  "damper C, and spring K, between two dofs or to ground"),
         CLI_TEXT(

@@ -50,18 +50,23 @@ int main(int argc, char **argv)
                    "container of the maxima of all rows"),
         CLI_OUTPUT("table", &given.table, "FILE", "the same as text with tabs"),
         CLI_TEXT("transform", &given.transform, "modes|floating|F",
-                 "coordinates of the history are of the model's modes, as in "
-                 "an FMU, of those beside a floating frame, as in Exudyn and "
-                 "MBDyn, or x of q = V x with a matrix V, F being FILE[:NAME]"),
+                 "what the coordinates of the history are: those of modes, as "
+                 "in an FMU; of a body in a moving frame (floating), as in "
+                 "Exudyn and MBDyn; or x of q = V x, with the matrix V in F, "
+                 "which is FILE[:NAME] [those of the model, q]"),
         CLI_TEXT("frame", &given.frame, "basic|centre|GRID",
                  "frame of --transform floating, as it was exported [basic]"),
         CLI_TEXT("reference", &given.reference, "none|mean-axis|tangent",
                  "how the modes moved with it, as they were exported [none]"),
         CLI_TEXT("q", &given.q, "COLUMNS",
-                 "columns of a table with coordinates, as 2-9, names or q*"),
-        CLI_TEXT("v", &given.v, "COLUMNS", "columns with their rates"),
-        CLI_TEXT("a", &given.a, "COLUMNS", "columns with accelerations"),
-        CLI_TEXT("f", &given.f, "COLUMNS", "columns with the inputs"),
+                 "columns of a table that hold the coordinates: numbers as "
+                 "2-9, names, or q* for all names that begin with q"),
+        CLI_TEXT("v", &given.v, "COLUMNS",
+                 "columns of the velocities, in the order of --q"),
+        CLI_TEXT("a", &given.a, "COLUMNS",
+                 "columns of the accelerations, in the order of --q"),
+        CLI_TEXT("f", &given.f, "COLUMNS",
+                 "columns of the inputs, in the order of the model"),
         CLI_REAL("step", &given.step, "H", 1e-15, 1e12,
                  "seconds between times of a file .mod"),
         CLI_INT("label", &given.label, "N", 1, 1e15,

@@ -14,8 +14,8 @@
  *
  * so that V'K V = [K_x, 0; 0, diag(lambda)] and V'M V = [M_x, M_xm; ., I]: the
  * form of Craig and Bampton, in the subspace of any method [CraigBampton1968].
- * Of modes without stiffness V_x has so much that a rigid motion of the frames
- * is one of all of the body.
+ * Modes without stiffness are added to V_x, so that a rigid motion of the frames
+ * moves all of the body as a rigid one.
  */
 #ifndef RITZ_MODEL_INTERFACE_FORM_H
 #define RITZ_MODEL_INTERFACE_FORM_H

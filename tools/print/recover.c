@@ -274,7 +274,8 @@ static ritz_status recover_times(recovery *r)
 
 /* ---- results ------------------------------------------------------------ */
 
-/* Behind the name of an output stands what a signal makes of it. */
+/* @param[in] ending  put behind the names of outputs: that of files which a
+   signal left incomplete, or "" */
 static ritz_status write_results(recovery *r, const char *ending)
 {
     const recover_options *given = r->given;
