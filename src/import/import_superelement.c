@@ -213,11 +213,9 @@ static ritz_status find_deck(const char *path, char **out)
 static ritz_status choose_deck(const char *path, const char *bulk,
                                const ritz_foreign *file, char **out)
 {
-    const char *named = file->format == &ritz_format_dmig ? path : NULL;
+    const char *named = bulk ? bulk : path;
 
-    if (bulk)
-        named = bulk;
-    if (!named)
+    if (!bulk && file->format != &ritz_format_dmig)
         return find_deck(path, out);
     RITZ_CHECK_COPY(*out, named, (int64_t)strlen(named) + 1);
     return RITZ_OK;
