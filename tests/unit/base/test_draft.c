@@ -456,12 +456,13 @@ static void end_process(int number)
    last one. */
 static void a_signal_leaves_all_files_of_a_set(void **state)
 {
+    const struct sigaction action = {.sa_handler = end_process};
     int outcome = 0;
     pid_t writer = fork();
 
     (void)state;
     if (writer == 0) {
-        signal(SIGTERM, end_process);
+        sigaction(SIGTERM, &action, NULL);
         faults_signal = SIGTERM;
         _exit(write_two(NULL) == RITZ_OK ? 0 : 1);
     }
