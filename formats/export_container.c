@@ -17,12 +17,14 @@ static ritz_status write_container(const ritz_export_object *object,
         RITZ_CHECK(ritz_container_write_state_space(request->output,
                                                     object->states, stamp));
         return ritz_export_say(
-            report, "state space, %lld states",
+            report, "state space, %lld states; numbers keep every bit",
             (long long)ritz_state_space_order(object->states));
     }
     RITZ_CHECK(
         ritz_container_write_reduced(request->output, object->reduced, stamp));
-    return ritz_export_say(report, "reduced component, %lld columns",
+    return ritz_export_say(report,
+                           "reduced component, %lld columns; numbers keep "
+                           "every bit",
                            (long long)object->reduced->K.nrow);
 }
 
@@ -31,6 +33,6 @@ const ritz_exporter ritz_exporter_container = {
     .summary = "container of Ritz, which every tool reads",
     .reference = "HDFGroup2016",
     .kind = "reduced",
-    .takes = RITZ_EXPORT_REDUCED | RITZ_EXPORT_STATES,
+    .takes = RITZ_EXPORT_REDUCED | RITZ_EXPORT_STATES | RITZ_EXPORT_ROWS,
     .write = write_container,
 };

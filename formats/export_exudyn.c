@@ -200,7 +200,8 @@ ritz_status exudyn_body_say(const exudyn_body *b, ritz_export_report *report)
     if (f->D.val || f->structural)
         RITZ_CHECK(ritz_export_say(report, "damping left out: the file has no "
                                            "place for it"));
-    return RITZ_OK;
+    return ritz_export_say(report, "inputs, outputs and ports are left out; "
+                                   "numbers keep every bit");
 }
 
 /* ---- its file ----------------------------------------------------------- */

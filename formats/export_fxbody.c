@@ -384,7 +384,7 @@ static ritz_status say_losses(const fxbody *b, bool fits,
         RITZ_CHECK(ritz_export_say(report,
                                    "Rayleigh damping, alpha %.9g, beta %.9g",
                                    b->alpha, b->beta));
-    return ritz_export_say(report, "stresses, inputs and outputs are left out");
+    return ritz_export_say(report, "inputs, outputs and ports are left out");
 }
 
 static ritz_status write_fxbody(const ritz_export_object *object,

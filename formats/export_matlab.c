@@ -70,6 +70,9 @@ static ritz_status fill_sheet(const ritz_export_object *object,
     /* all but T, which may be large */
     RITZ_CHECK(ritz_export_matrices(
         object, request, reduced ? "K,M,D,K4,B,C,Cv,Ca" : NULL, report, &list));
+    RITZ_CHECK(ritz_export_say_rest(object, request, &list, report));
+    RITZ_CHECK(ritz_export_say(report, "numbers keep every bit; inertia and "
+                                       "ports are left out"));
     RITZ_CHECK(ritz_mat_sheet_open(request->output, &s));
     RITZ_CHECK(ritz_mat_put_matrices(&s, &list));
     RITZ_CHECK(reduced ? put_reduced(&s, reduced)

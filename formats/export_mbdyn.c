@@ -211,6 +211,7 @@ static ritz_status say_losses(const ritz_reduced *reduced, const fem_file *fem,
         RITZ_CHECK(ritz_export_say(report,
                                    "the joint takes damping of the file by "
                                    "'damping from file'"));
+    RITZ_CHECK(ritz_export_say(report, "17 digits, which keep every bit"));
     return ritz_export_say(report,
                            "inputs, outputs, ports and units are left out: the "
                            "file has no place for them but comments");

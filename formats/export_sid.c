@@ -343,8 +343,9 @@ static ritz_status say_losses(const sid_body *b, const title *t,
 
     RITZ_CHECK(ritz_export_say(report, "17 digits, which keep every bit"));
     RITZ_CHECK(ritz_export_say(
-        report, "geometric stiffening, inputs and outputs are left out; Gr and "
-                "Ge do not change with deformation"));
+        report,
+        "geometric stiffening, inputs, outputs and ports are left out; Gr and "
+        "Ge do not change with deformation"));
     if (t->kept < t->lines)
         RITZ_CHECK(ritz_export_say(
             report,

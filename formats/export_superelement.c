@@ -564,6 +564,7 @@ const ritz_exporter ritz_exporter_superelement = {
     .summary = "NASTRAN external superelement: .op4, .asm and .pch",
     .reference = "MSC2022",
     .kind = "reduced",
-    .takes = RITZ_EXPORT_REDUCED | RITZ_EXPORT_STYLE | RITZ_EXPORT_ID,
+    .takes = RITZ_EXPORT_REDUCED | RITZ_EXPORT_STYLE | RITZ_EXPORT_ID |
+             RITZ_EXPORT_ROWS,
     .write = write_element,
 };

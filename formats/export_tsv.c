@@ -78,7 +78,9 @@ static ritz_status write_table(const ritz_export_object *object,
 
     RITZ_CHECK(s ? ritz_sink_write(request->output, print_simulation, s)
                  : ritz_sink_write(request->output, print_response, r));
-    return ritz_export_say(report, "%lld %s, %lld outputs, %lld inputs",
+    return ritz_export_say(report,
+                           "%lld %s, %lld outputs, %lld inputs; numbers have "
+                           "15 or 16 digits",
                            (long long)(s ? s->count : r->count),
                            s ? "times" : "frequencies",
                            (long long)(s ? s->num_outputs : r->num_outputs),

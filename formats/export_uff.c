@@ -395,6 +395,8 @@ static ritz_status write_shapes(const ritz_export_object *object,
     RITZ_CHECK(ritz_export_say(report, "six digits of each number are kept: "
                                        "for pictures and comparison, not for "
                                        "computation"));
+    RITZ_CHECK(ritz_export_say(report, "there is room for four lines of the "
+                                       "certificate with each mode"));
     return say_losses(s, report);
 }
 

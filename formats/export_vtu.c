@@ -120,7 +120,8 @@ static ritz_status write_shapes(const ritz_export_object *object,
     RITZ_CHECK(ritz_certificate(object, request->stamp, &certificate));
     parts.certificate = certificate;
     RITZ_CHECK(ritz_sink_write(request->output, ritz_vtu_print, &parts));
-    return ritz_shapes_say(object->shapes, report);
+    RITZ_CHECK(ritz_shapes_say(object->shapes, report));
+    return ritz_export_say(report, "17 digits, which keep every bit");
 }
 
 const ritz_exporter ritz_exporter_vtu = {

@@ -214,8 +214,8 @@ static ritz_status write_shapes(const ritz_export_object *object,
     RITZ_CHECK(ritz_draft_publish_all(2, (ritz_draft *[]){&heavy, &light}));
     RITZ_CHECK(ritz_shapes_say(shapes, report));
     return ritz_export_say(report,
-                           "the numbers are in %.200s, which must "
-                           "stay beside it",
+                           "the numbers are in %.190s, which must stay beside "
+                           "it, and keep every bit",
                            beside);
 }
 

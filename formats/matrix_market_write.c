@@ -141,6 +141,10 @@ static ritz_status write_matrices(const ritz_export_object *object,
     RITZ_REFUSE_IF(list.count != 1 && !pattern, RITZ_ERR_ARGUMENT,
                    "a Matrix Market file holds one matrix: name it with "
                    "--matrix, or write '%%' for it in the output's name");
+    RITZ_CHECK(ritz_export_say_rest(object, request, &list, report));
+    RITZ_CHECK(ritz_export_say(report, "17 digits, which keep every bit; the "
+                                       "file has no place for names and "
+                                       "inertia"));
     RITZ_CHECK(ritz_certificate(object, request->stamp, &certificate));
     for (int64_t k = 0; k < list.count; k++) {
         const char *name = list.matrix[k].name;

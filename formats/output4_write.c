@@ -339,6 +339,11 @@ static ritz_status write_matrices(const ritz_export_object *object,
 
     RITZ_CHECK(ritz_export_damped(object, request, NULL, report, &list));
     RITZ_CHECK(ritz_output4_style_of(request, report, &style));
+    RITZ_CHECK(ritz_export_say_rest(object, request, &list, report));
+    if (!style.text || style.digits == 17)
+        RITZ_CHECK(ritz_export_say(report, "numbers keep every bit"));
+    RITZ_CHECK(ritz_export_say(report, "the file has no place for names, "
+                                       "inertia and the certificate"));
     return ritz_output4_write(request->output, list.count, list.matrix, &style);
 }
 

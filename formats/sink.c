@@ -399,6 +399,34 @@ static bool has_matrix(const ritz_matrices *list, const char *name)
     return false;
 }
 
+ritz_status ritz_export_say_rest(const ritz_export_object *object,
+                                 const ritz_export_request *request,
+                                 const ritz_matrices *list,
+                                 ritz_export_report *report)
+{
+    const ritz_reduced *r = object->reduced;
+    char names[160] = "";
+    int length = 0;
+
+    if (!r || request->matrices)
+        return RITZ_OK;
+    for (const entry *e = reduced.entry; e->name; e++) {
+        const ritz_dense *A = dense_of(r, e);
+
+        if (A->val && A->nrow > 0 && A->ncol > 0 && !has_matrix(list, e->name))
+            length += snprintf(names + length, sizeof names - (size_t)length,
+                               " %s", e->name);
+    }
+    for (int64_t k = 0; k < r->num_quantities; k++) {
+        const size_t used = strlen(names);
+
+        snprintf(names + used, sizeof names - used, " %s", r->quantity[k].name);
+    }
+    return *names ? ritz_export_say(report, "left out, --matrix names them:%s",
+                                    names)
+                  : RITZ_OK;
+}
+
 ritz_status ritz_export_damped(const ritz_export_object *object,
                                const ritz_export_request *request,
                                const char *usual, ritz_export_report *report,
@@ -429,4 +457,37 @@ ritz_status ritz_export_damped(const ritz_export_object *object,
                                    text));
     RITZ_MOVE(*out, list);
     return RITZ_OK;
+}
+
+/* Formats that take names of matrices take those of quantities too, and say
+   themselves what is left out. */
+static ritz_status say_rows(const ritz_exporter *exporter,
+                            const ritz_export_object *object,
+                            ritz_export_report *report)
+{
+    const ritz_reduced *reduced = object->reduced;
+    char names[200] = "";
+
+    if (!reduced || object->shapes || reduced->num_quantities == 0 ||
+        exporter->takes & (RITZ_EXPORT_ROWS | RITZ_EXPORT_MATRICES))
+        return RITZ_OK;
+    for (int64_t k = 0; k < reduced->num_quantities; k++) {
+        const size_t used = strlen(names);
+
+        snprintf(names + used, sizeof names - used, "%s%s", k > 0 ? ", " : "",
+                 reduced->quantity[k].name);
+    }
+    return ritz_export_say(report,
+                           "rows to recover are left out, ritz-recover has "
+                           "them: %s",
+                           names);
+}
+
+ritz_status ritz_export_write(const ritz_exporter *exporter,
+                              const ritz_export_object *object,
+                              const ritz_export_request *request,
+                              ritz_export_report *report)
+{
+    RITZ_CHECK(exporter->write(object, request, report));
+    return say_rows(exporter, object, report);
 }

@@ -75,6 +75,13 @@ ritz_status ritz_export_damped(const ritz_export_object *object,
                                const char *usual, ritz_export_report *report,
                                ritz_matrices *out);
 
+/** Say which other matrices the object has, if the request names none.
+ * @param[in] list  those that are written */
+ritz_status ritz_export_say_rest(const ritz_export_object *object,
+                                 const ritz_export_request *request,
+                                 const ritz_matrices *list,
+                                 ritz_export_report *report);
+
 /** Refuse units other than kg, m and s. @param[in] program  its name, for the
  * sentence: "OpenFAST" */
 ritz_status ritz_export_demand_si(const char *units, const char *program);

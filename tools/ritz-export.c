@@ -71,7 +71,7 @@ int main(int argc, char **argv)
         CLI_TEXT("to", &to, "FORMAT", "file format, one of --list"),
         CLI_TEXT("matrix", &request->matrices, "NAME[,NAME]",
                  "write these matrices only, rows to recover by their "
-                 "names [all but these rows]"),
+                 "names [K,M,D,K4 or A to E; matlab: inputs and outputs too]"),
         CLI_FLAG("text", &request->text,
                  "write text instead of binary (output4, superelement)"),
         CLI_FLAG("dense", &request->dense,

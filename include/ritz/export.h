@@ -253,6 +253,7 @@ enum {
     RITZ_EXPORT_PORTS = 512,
     RITZ_EXPORT_FMI = 1024,
     RITZ_EXPORT_ID = 2048,
+    RITZ_EXPORT_ROWS = 4096, /* rows to recover are written */
 };
 
 typedef struct ritz_exporter {
@@ -289,6 +290,13 @@ extern const ritz_exporter ritz_exporter_tsv;
 extern const ritz_exporter ritz_exporter_uff;
 extern const ritz_exporter ritz_exporter_vtu;
 extern const ritz_exporter ritz_exporter_xdmf;
+
+/** Have an exporter write the object. The report names rows to recover that the
+ * format has no place for. */
+ritz_status ritz_export_write(const ritz_exporter *exporter,
+                              const ritz_export_object *object,
+                              const ritz_export_request *request,
+                              ritz_export_report *report);
 
 /** @return RITZ_ERR_ARGUMENT if something is asked that the format has not */
 ritz_status ritz_export_check(const ritz_exporter *exporter,

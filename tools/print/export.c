@@ -443,7 +443,7 @@ static ritz_status export_model(cli_run *run, model *m,
         RITZ_CHECK(find_runtime(runtime));
         request.runtime = runtime;
     }
-    return exporter->write(&object, &request, done);
+    return ritz_export_write(exporter, &object, &request, done);
 }
 
 /* Add the damping that is asked for and, with --states, make a state space. */
