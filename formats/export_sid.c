@@ -298,16 +298,24 @@ static void add_line(title *t, const char *line, size_t length)
              used > 0 ? " | " : "", (int)length, line);
 }
 
-/* Estimates and the command are added after all other lines, so that they are
-   the first to be left out. */
-static bool comes_last(const char *line)
-{
-    static const char *const last[] = {"error, estimated: ", "command: "};
+enum { TURNS = 3 };
 
-    for (size_t k = 0; k < sizeof last / sizeof *last; k++)
-        if (strncmp(line, last[k], strlen(last[k])) == 0)
-            return true;
-    return false;
+/* When a line is added: how the model was made and from which inputs first,
+   measured errors next, and then what may be left out rather than these. */
+static int turn_of(const char *line)
+{
+    static const struct {
+        const char *begin;
+        int turn;
+    } turns[] = {{"error, measured: ", 1},
+                 {"error, estimated: ", 2},
+                 {"made by: ", 2},
+                 {"command: ", 2}};
+
+    for (size_t k = 0; k < sizeof turns / sizeof *turns; k++)
+        if (strncmp(line, turns[k].begin, strlen(turns[k].begin)) == 0)
+            return turns[k].turn;
+    return 0;
 }
 
 static ritz_status make_title(const ritz_export_object *object,
@@ -322,11 +330,11 @@ static ritz_status make_title(const ritz_export_object *object,
              ritz_frame_condition_name(b->normal.floating.reference));
     add_line(t, frame, strlen(frame));
     RITZ_CHECK(ritz_certificate(object, request->stamp, &lines));
-    for (int late = 0; late < 2; late++)
+    for (int turn = 0; turn < TURNS; turn++)
         for (const char *at = lines; *at;) {
             const size_t length = strcspn(at, "\n");
 
-            if (comes_last(at) == late)
+            if (turn_of(at) == turn)
                 add_line(t, at, length);
             at += length + (at[length] == '\n');
         }

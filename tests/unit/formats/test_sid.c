@@ -316,17 +316,23 @@ static void the_certificate_is_in_the_first_line(void **state)
     const ritz_stamp stamp = {
         .command = long_command, .num_inputs = 1, .input = input};
     const ritz_export_request request = {.output = path, .stamp = &stamp};
-    ritz_measure item = {.name = "frequency-relative",
-                         .value = 1.5e-6,
-                         .limit = 1e-3,
-                         .where = "mode 7, 3.41 Hz"};
+    const ritz_measure first = {.name = "frequency-relative",
+                                .value = 1.5e-6,
+                                .limit = 1e-3,
+                                .where = "mode 7, 3.41 Hz"};
+    ritz_measure items[30] = {first};
     ritz_reduced known = f->reduced; /* borrowed */
     RITZ_OWN(ritz_export_report) report = {0};
     RITZ_OWN(sid_file) file = {0};
     bool said = false;
 
     memset(long_command, 'J', sizeof long_command - 1);
-    known.errors = (ritz_measures){1, &item};
+    /* more than there is room for: the input is there all the same */
+    for (int k = 1; k < 30; k++) {
+        items[k] = first;
+        snprintf(items[k].name, sizeof items[k].name, "measure-%d", k);
+    }
+    known.errors = (ritz_measures){30, items};
     assert_ok(ritz_exporter_sid.write(&(ritz_export_object){.reduced = &known},
                                       &request, &report));
     sid_file_read(path, &file);
