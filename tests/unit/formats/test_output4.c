@@ -537,7 +537,7 @@ static void put_odd_words(const char *bytes, int64_t size)
     char *damaged = malloc((size_t)size);
     uint64_t seed = 4321;
 
-    for (int k = 0; k < 500; k++) {
+    for (int k = 0; k < 160; k++) {
         int64_t within = k % 2 ? size : 1000; /* all, or where headers are */
         int64_t place =
             (int64_t)(damage_random(&seed) >> 33) % (within / 4) * 4;

@@ -425,10 +425,10 @@ static void every_allocation_may_fail(void **)
 
     assert_ok(spaces_rod(8, 0.1, true, &rod));
     assert_ok(spaces_chains(1, 3, false, &chain));
-    assert_survives_allocations(4, make(&rod, NULL));
-    assert_survives_allocations(4, make(&chain, NULL));
-    assert_survives_allocations(4, project(&rod));
-    assert_survives_allocations(4, make(&rod, band));
+    assert_survives_allocations(10, make(&rod, NULL));
+    assert_survives_allocations(10, make(&chain, NULL));
+    assert_survives_allocations(10, project(&rod));
+    assert_survives_allocations(10, make(&rod, band));
 }
 
 static const struct CMUnitTest tests[] = {

@@ -127,7 +127,7 @@ static void every_allocation_may_fail(void **)
 
     assert_ok(spaces_rod(8, 0.0, true, &rod));
     make_small(&rod, 0.05, &small);
-    assert_survives_allocations(5, take_norms(&rod, &small));
+    assert_survives_allocations(15, take_norms(&rod, &small));
 }
 
 static const struct CMUnitTest tests[] = {

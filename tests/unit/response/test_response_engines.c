@@ -195,7 +195,7 @@ static double differ(ritz_responder *one, ritz_responder *two,
 
     assert_true(H && peak);
     find_peaks(one, c, values, peak);
-    for (int t = 0; t < 50; t++) {
+    for (int t = 0; t < 20; t++) {
         double hertz = 0.002 + 0.298 * random_part(&seed);
 
         assert_ok(ritz_responder_at(one, hertz, H));

@@ -62,7 +62,7 @@ static void a_dense_model_takes_the_sparse_engine_if_asked(void **)
     assert_near(difference(&sparse, &dense), 0.0, 1e-14);
 }
 
-/* With wind 100 poles oscillate: -2 +- 2 i sqrt(wind^2 - 1) cos(..), within the
+/* With wind 50 poles oscillate: -2 +- 2 i sqrt(wind^2 - 1) cos(..), within the
    range. */
 static void points_are_added_at_poles_that_oscillate(void **)
 {
@@ -72,7 +72,7 @@ static void points_are_added_at_poles_that_oscillate(void **)
     RITZ_OWN(ritz_response) plain = {0}, more = {0};
 
     refined.refine = true;
-    assert_ok(spaces_rod(200, 100.0, false, &rod));
+    assert_ok(spaces_rod(100, 100.0, false, &rod));
     assert_ok(respond(&rod, NULL, &even, &plain));
     assert_ok(respond(&rod, NULL, &refined, &more));
     assert_int_equal(plain.count, 20);
@@ -80,7 +80,7 @@ static void points_are_added_at_poles_that_oscillate(void **)
     ritz_response_free(&plain);
     ritz_response_free(&more);
     ritz_state_space_free(&rod); /* real poles have no peaks */
-    assert_ok(spaces_rod(200, 0.0, true, &rod));
+    assert_ok(spaces_rod(100, 0.0, true, &rod));
     assert_ok(respond(&rod, NULL, &refined, &more));
     assert_int_equal(more.count, 20);
 }
