@@ -130,8 +130,9 @@ ritz_status ritz_import_channels(const char *list, char prefix, int64_t count,
     char item[2 * RITZ_NAME_SIZE], twice[RITZ_NAME_SIZE];
 
     RITZ_REFUSE_IF(list && count_items(list) != count, RITZ_ERR_ARGUMENT,
-                   "%" PRId64 " names are given for %" PRId64,
-                   count_items(list), count);
+                   "%" PRId64 " names are given for %" PRId64 " %s",
+                   count_items(list), count,
+                   prefix == 'u' ? "inputs" : "outputs");
     for (int64_t k = 0; k < count; k++) {
         if (list) {
             size_t length = strcspn(list, ",");

@@ -218,7 +218,7 @@ static void wrong_matrices_are_refused(void **)
         {0, c, two, 0, 0, "has 2 outputs, "},
         {off, 0, 0, 0, 0,
          "has an entry for 'grid 1 R2', which has neither stiffness nor mass"},
-        {b, 0, 0, "p,q", 0, "--input-names: 2 names are given for 1"},
+        {b, 0, 0, "p,q", 0, "--input-names: 2 names are given for 1 inputs"},
         {b, 0, 0, "f", 0, "there are two inputs 'f'"},
         {0, two, 0, 0, "y,y", "'y' is named twice"},
         {0, c, 0, 0, "y@0", "'0' is no limit"},
