@@ -1,6 +1,6 @@
 /* A frequency response as columns of text: hertz, then |H| and its phase, then
    singular values where it has them; a time response as seconds, inputs,
-   outputs, energies. */
+   outputs, energies, diagnostics. */
 #include "base/tolerances.h"
 #include "formats/sink.h"
 
@@ -55,6 +55,8 @@ static ritz_status print_simulation(FILE *file, const void *object)
         fprintf(file, "\t%s", s->output[i]);
     for (int e = 0; e < energies; e++)
         fprintf(file, "\t%s", energy[e].name);
+    for (int64_t j = 0; j < s->num_diagnostics; j++)
+        fprintf(file, "\t%s", s->diagnostic[j]);
     fputc('\n', file);
     for (int64_t k = 0; k < s->count; k++) {
         fprintf(file, "%.15g", s->seconds[k]);
@@ -64,6 +66,8 @@ static ritz_status print_simulation(FILE *file, const void *object)
             fprintf(file, "\t%.15e", s->y[k * s->num_outputs + i]);
         for (int e = 0; e < energies; e++)
             fprintf(file, "\t%.15e", energy[e].value[k]);
+        for (int64_t j = 0; j < s->num_diagnostics; j++)
+            fprintf(file, "\t%.15e", s->diagnosis[k * s->num_diagnostics + j]);
         fputc('\n', file);
     }
     return RITZ_OK;

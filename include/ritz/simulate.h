@@ -126,6 +126,10 @@ typedef struct ritz_simulation {
     double *y; /* y[k * num_outputs + i] */
     double *kinetic, *potential, *dissipated, *work, *balance; /* count, or
                                                                   all NULL */
+    int64_t num_diagnostics; /* values of the run itself, such as the violation
+                                of constraints */
+    char (*diagnostic)[RITZ_NAME_SIZE]; /* their names */
+    double *diagnosis;                  /* diagnosis[k * num_diagnostics + j] */
     int64_t num_coordinates; /* of the model; 0: they are not stored */
     double *q, *v, *a;       /* q, q' and q'': q[k * num_coordinates + j] */
     char integrator[RITZ_NAME_SIZE];

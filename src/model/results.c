@@ -28,7 +28,8 @@ void ritz_simulation_free(ritz_simulation *simulation)
               simulation->u, simulation->y, simulation->kinetic,
               simulation->potential, simulation->dissipated, simulation->work,
               simulation->balance);
-    RITZ_FREE(simulation->q, simulation->v, simulation->a);
+    RITZ_FREE(simulation->diagnostic, simulation->diagnosis, simulation->q,
+              simulation->v, simulation->a);
     *simulation = (ritz_simulation){0};
 }
 

@@ -110,18 +110,38 @@ ritz_status ritz_groups_new(const ritz_dense *D, double floor,
                             ritz_groups *out);
 void ritz_groups_free(ritz_groups *groups);
 
-/* A motion on its way. */
+/*
+ * A motion over time: its state, and how it advances by a step. Integrators
+ * fill one (ritz_march_new). Runs that are no single linear model (models that
+ * are switched, joined by constraints, controlled, or turned) fill one too,
+ * with the functions that differ for them; ritz_march_run is the loop of all.
+ */
 typedef struct ritz_march {
     const ritz_motion *motion; /* borrowed */
     double step;
+    int64_t steps; /* done so far */
     double *x, *v; /* n each; of states v is NULL */
     double dissipated, work;
     void *own; /* of the integrator */
+    /** What `own` carries from a step to the next in addition to x and v:
+     * with these numbers restored the march goes on bit for bit. Within own. */
+    double *memory;
+    int64_t num_memory;
     /** One step, with inputs as they are at its start and at its end. */
     ritz_status (*advance)(struct ritz_march *march, const double *u0,
                            const double *u1);
     /** x, v were set and inputs are u: anything else that follows from it. */
     ritz_status (*settle)(struct ritz_march *march, const double *u);
+    /** Outputs of the present state; NULL: y = C x + Cv v + feed u. */
+    void (*outputs)(const struct ritz_march *march, const double *u, double *y);
+    /** Energies of the present state; NULL: those of M and K. */
+    void (*energy)(const struct ritz_march *march, double *kinetic,
+                   double *potential);
+    /** Values of its own that are stored with each time that is written, such
+     * as the violation of constraints, and their names. */
+    int64_t num_diagnostics;
+    const char *const *diagnostic;
+    void (*diagnose)(const struct ritz_march *march, double *out);
     void (*free)(void *own);
 } ritz_march;
 
@@ -130,6 +150,32 @@ ritz_status ritz_march_new(const ritz_motion *motion,
                            const ritz_integrator *integrator, double step,
                            double rho, ritz_march *out);
 void ritz_march_free(ritz_march *march);
+
+/** Outputs of the present state, inputs being u. */
+void ritz_march_outputs(const ritz_march *march, const double *u, double *y);
+
+/** Kinetic and potential energy of the present state. */
+void ritz_march_energy(const ritz_march *march, double *kinetic,
+                       double *potential);
+
+struct ritz_reach;
+
+/**
+ * The loop over time: the initial state and impulses of a request, its steps,
+ * and what is stored.
+ *
+ * @param[in,out] reach  noted with each time that is written; may be NULL
+ * @param[out] s  empty; freed by the caller on failure too. Its inputs, outputs
+ *                and damping have no names yet (ritz_simulation_label)
+ * @return RITZ_ERR_CONVERGENCE if the motion leaves all bounds
+ */
+ritz_status ritz_march_run(ritz_march *march,
+                           const ritz_simulation_request *request,
+                           struct ritz_reach *reach, ritz_simulation *s);
+
+/** Give a simulation the names of inputs and outputs and the damping of its
+ * model. */
+ritz_status ritz_simulation_label(ritz_model subject, ritz_simulation *s);
 
 /*
  * The largest value that a motion could give an output; its rounding is
@@ -150,6 +196,13 @@ typedef struct ritz_reach {
     double *work;   /* n */
     double seconds; /* when that was */
 } ritz_reach;
+
+ritz_status ritz_reach_new(ritz_model subject, const ritz_motion *motion,
+                           ritz_reach *out);
+
+/** Take the march as it is at @p seconds into account. */
+void ritz_reach_note(ritz_reach *reach, const ritz_march *march,
+                     double seconds);
 
 void ritz_reach_free(ritz_reach *reach);
 

@@ -42,11 +42,12 @@ typedef struct newmark_weights {
 typedef struct newmark {
     newmark_weights w;
     ritz_effective F;
-    double *a;    /* n, at the end of the last step */
-    double *x0;   /* n */
-    double *rhs;  /* n */
-    double *work; /* n */
-    double *last; /* inputs at the end of the last step */
+    double *memory; /* a, then last */
+    double *a;      /* n, at the end of the last step */
+    double *x0;     /* n */
+    double *rhs;    /* n */
+    double *work;   /* n */
+    double *last;   /* inputs at the end of the last step */
 } newmark;
 
 static void release_newmark(void *own)
@@ -54,7 +55,7 @@ static void release_newmark(void *own)
     newmark *s = own;
 
     ritz_effective_free(&s->F);
-    RITZ_FREE(s->a, s->x0, s->rhs, s->work, s->last, s);
+    RITZ_FREE(s->memory, s->x0, s->rhs, s->work, s);
 }
 
 /* a from equilibrium; dofs without mass have none. */
@@ -174,11 +175,14 @@ static ritz_status start_newmark(const ritz_motion *motion, double step,
     out->settle = settle_start;
     out->free = release_newmark;
     s->w = *w;
-    RITZ_CHECK_NEW(s->a, motion->n);
+    out->num_memory = motion->n + motion->B.ncol;
+    RITZ_CHECK_NEW(s->memory, out->num_memory);
+    out->memory = s->memory;
+    s->a = s->memory;
+    s->last = s->memory + motion->n;
     RITZ_CHECK_NEW(s->x0, motion->n);
     RITZ_CHECK_NEW(s->rhs, motion->n);
     RITZ_CHECK_NEW(s->work, motion->n);
-    RITZ_CHECK_NEW(s->last, motion->B.ncol);
     return ritz_effective_new(motion, 1.0 - w->alpha_m, f1 * w->gamma * step,
                               f1 * w->beta * step * step, false, &s->F);
 }

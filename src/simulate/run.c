@@ -13,206 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Motions on their way: what all integrators share. */
-
-ritz_status ritz_march_new(const ritz_motion *motion,
-                           const ritz_integrator *integrator, double step,
-                           double rho, ritz_march *out)
-{
-    RITZ_OWN(ritz_march) march = {.motion = motion, .step = step};
-
-    RITZ_CHECK_NEW(march.x, motion->n);
-    if (motion->form != RITZ_FORM_STATES)
-        RITZ_CHECK_NEW(march.v, motion->n);
-    RITZ_CHECK_IN(integrator->name,
-                  integrator->start(motion, step, rho, &march));
-    RITZ_MOVE(*out, march);
-    return RITZ_OK;
-}
-
-void ritz_march_free(ritz_march *march)
-{
-    if (march->own)
-        march->free(march->own);
-    RITZ_FREE(march->x, march->v);
-    *march = (ritz_march){0};
-}
-
-/* Outputs now. */
-static void see_outputs(const ritz_march *march, const double *u, double *y)
-{
-    const ritz_motion *m = march->motion;
-
-    for (int64_t i = 0; i < m->C.nrow; i++)
-        y[i] = 0.0;
-    ritz_motion_gemv(&m->C, 1.0, march->x, y);
-    if (march->v)
-        ritz_motion_gemv(&m->Cv, 1.0, march->v, y);
-    ritz_motion_gemv(&m->feed, 1.0, u, y);
-}
-
-static double sparse_quadratic(const ritz_sparse *A, const double *x)
-{
-    double sum = 0.0;
-
-    for (int64_t j = 0; j < A->ncol; j++)
-        for (int64_t k = A->colptr[j]; k < A->colptr[j + 1]; k++)
-            sum += x[A->rowind[k]] * A->val[k] * x[j];
-    return 0.5 * sum;
-}
-
-/* Kinetic and potential energy of the present state. */
-static void find_energy(const ritz_march *march, double *kinetic,
-                        double *potential)
-{
-    const ritz_motion *m = march->motion;
-
-    *kinetic = *potential = 0.0;
-    switch (m->form) {
-    case RITZ_FORM_MODAL:
-        for (int64_t k = 0; k < m->n; k++) {
-            *kinetic += 0.5 * march->v[k] * march->v[k];
-            *potential += 0.5 * m->lambda[k] * march->x[k] * march->x[k];
-        }
-        break;
-    case RITZ_FORM_DENSE:
-        *kinetic = 0.5 * ritz_motion_form(&m->M, march->v);
-        *potential = 0.5 * ritz_motion_form(&m->K, march->x);
-        break;
-    case RITZ_FORM_SPARSE:
-        *kinetic = sparse_quadratic(&m->sM, march->v);
-        *potential = sparse_quadratic(&m->sK, march->x);
-        break;
-    case RITZ_FORM_STATES:
-        break;
-    }
-}
-
-enum { BY_PLACE, BY_RATE, BY_ACCELERATION, BY_STRAIN, WAYS };
-
-/* M or K of dof j by itself. */
-static double diagonal_at(ritz_model s, bool mass, int64_t j)
-{
-    if (s.kind == RITZ_MODEL_COMPONENT)
-        return ritz_sparse_diagonal(mass ? &s.component->M : &s.component->K,
-                                    j);
-    return ritz_dense_col(mass ? s.dense.M : s.dense.K, j)[j];
-}
-
-/* weight^2 += c^2 / by */
-static void add_weight(const ritz_dense *C, int64_t j, int64_t i, double by,
-                       double *weight)
-{
-    if (C->val && by > 0.0)
-        *weight = hypot(*weight, ritz_dense_col(C, j)[i] / sqrt(by));
-}
-
-static void weigh_outputs(ritz_model s, ritz_reach *reach)
-{
-    const ritz_io io = ritz_model_io(s);
-    int64_t n = ritz_model_order(s);
-
-    for (int64_t j = 0; j < n; j++) {
-        double m = diagonal_at(s, true, j);
-        double k = m > 0.0 ? 0.0 : diagonal_at(s, false, j);
-
-        for (int64_t i = 0; i < reach->count; i++) {
-            double *weight = reach->weight + i * WAYS;
-
-            add_weight(&io.C, j, i, m, &weight[BY_PLACE]);
-            add_weight(&io.Cv, j, i, m, &weight[BY_RATE]);
-            add_weight(&io.Ca, j, i, m, &weight[BY_ACCELERATION]);
-            add_weight(&io.C, j, i, k, &weight[BY_STRAIN]);
-        }
-    }
-}
-
-static ritz_status reach_new(ritz_model subject, const ritz_motion *motion,
-                             ritz_reach *out)
-{
-    RITZ_OWN(ritz_reach) reach = {.count = motion->feed.nrow};
-
-    RITZ_CHECK_NEW(reach.size, reach.count);
-    if (subject.kind != RITZ_MODEL_STATES) {
-        RITZ_CHECK_NEW(reach.weight, WAYS * reach.count);
-        RITZ_CHECK_NEW(reach.last, motion->n);
-        RITZ_CHECK_NEW(reach.work, motion->n);
-        weigh_outputs(subject, &reach);
-    }
-    RITZ_MOVE(*out, reach);
-    return RITZ_OK;
-}
-
-/* sqrt(x'M x) */
-static double norm_of(const ritz_motion *motion, const double *x, double *work)
-{
-    if (motion->form == RITZ_FORM_MODAL)
-        return sqrt(ritz_motion_dot(motion->n, x, x));
-    memset(work, 0, (size_t)motion->n * sizeof *work);
-    ritz_motion_add(motion, RITZ_MASS, 1.0, x, work);
-    return sqrt(fmax(ritz_motion_dot(motion->n, x, work), 0.0));
-}
-
-static void note_states(ritz_reach *reach, const ritz_march *march)
-{
-    const ritz_dense *C = &march->motion->C;
-
-    for (int64_t i = 0; i < reach->count; i++) {
-        double sum = 0.0;
-
-        for (int64_t j = 0; j < C->ncol; j++)
-            sum += fabs(ritz_dense_col(C, j)[i] * march->x[j]);
-        reach->size[i] = fmax(reach->size[i], sum);
-    }
-}
-
-/* x'' as the quotient of two velocities: nothing of it at the start. */
-static double acceleration_of(ritz_reach *reach, const ritz_march *march,
-                              double seconds)
-{
-    double by = seconds - reach->seconds;
-    double size = 0.0;
-
-    for (int64_t k = 0; k < march->motion->n; k++)
-        reach->last[k] = march->v[k] - reach->last[k];
-    if (by > 0.0)
-        size = norm_of(march->motion, reach->last, reach->work) / by;
-    memcpy(reach->last, march->v, (size_t)march->motion->n * sizeof(double));
-    reach->seconds = seconds;
-    return size;
-}
-
-/* The march as it is now, at @p seconds. */
-static void note_reach(ritz_reach *reach, const ritz_march *march,
-                       double seconds)
-{
-    double size[WAYS] = {0.0};
-    double kinetic = 0.0, potential = 0.0;
-
-    if (!reach->weight) {
-        note_states(reach, march);
-        return;
-    }
-    find_energy(march, &kinetic, &potential);
-    size[BY_PLACE] = norm_of(march->motion, march->x, reach->work);
-    size[BY_RATE] = sqrt(2.0 * fmax(kinetic, 0.0));
-    size[BY_ACCELERATION] = acceleration_of(reach, march, seconds);
-    size[BY_STRAIN] = sqrt(2.0 * fmax(potential, 0.0));
-    for (int64_t i = 0; i < reach->count; i++) {
-        double sum = 0.0;
-
-        for (int k = 0; k < WAYS; k++)
-            sum += reach->weight[i * WAYS + k] * size[k];
-        reach->size[i] = fmax(reach->size[i], sum);
-    }
-}
-
-void ritz_reach_free(ritz_reach *reach)
-{
-    RITZ_FREE(reach->weight, reach->size, reach->last, reach->work);
-    *reach = (ritz_reach){0};
-}
-
 /* A file of more values than this is refused. */
 static const int64_t most_values = INT64_C(1) << 31;
 
@@ -234,10 +34,11 @@ ritz_status ritz_request_steps(const ritz_simulation_request *request,
     return RITZ_OK;
 }
 
-static ritz_status make_room(const ritz_motion *motion,
+static ritz_status make_room(const ritz_march *march,
                              const ritz_simulation_request *request,
                              int64_t steps, ritz_simulation *s)
 {
+    const ritz_motion *motion = march->motion;
     int64_t every = request->every > 0 ? request->every : 1;
     int64_t values = 0;
 
@@ -246,13 +47,19 @@ static ritz_status make_room(const ritz_motion *motion,
     s->count = steps / every + 1;
     s->step = request->step;
     s->order = motion->n;
-    values = s->num_inputs + s->num_outputs + 8;
+    s->num_diagnostics = march->num_diagnostics;
+    values = s->num_inputs + s->num_outputs + s->num_diagnostics + 8;
     RITZ_REFUSE_IF(s->count > most_values / values, RITZ_ERR_ARGUMENT,
                    "%" PRId64 " times are too many to write: give --every",
                    s->count);
     RITZ_CHECK_NEW(s->seconds, s->count);
     RITZ_CHECK_NEW(s->u, s->count * s->num_inputs);
     RITZ_CHECK_NEW(s->y, s->count * s->num_outputs);
+    RITZ_CHECK_NEW(s->diagnostic, s->num_diagnostics);
+    RITZ_CHECK_NEW(s->diagnosis, s->count * s->num_diagnostics);
+    for (int64_t j = 0; j < s->num_diagnostics; j++)
+        (void)snprintf(s->diagnostic[j], RITZ_NAME_SIZE, "%s",
+                       march->diagnostic[j]);
     if (motion->form != RITZ_FORM_STATES && motion->energies) {
         RITZ_CHECK_NEW(s->kinetic, s->count);
         RITZ_CHECK_NEW(s->potential, s->count);
@@ -334,7 +141,7 @@ static void push_impulses(const ritz_motion *motion,
     double *moved = march->v ? march->v : march->x;
     double before = 0.0, after = 0.0, potential = 0.0;
 
-    find_energy(march, &before, &potential);
+    ritz_march_energy(march, &before, &potential);
     for (int64_t j = 0; request->signal && j < motion->push.ncol; j++) {
         const double *jump = ritz_dense_col(&motion->push, j);
         const ritz_signal *signal = &request->signal[j];
@@ -343,7 +150,7 @@ static void push_impulses(const ritz_motion *motion,
              signal->kind == RITZ_SIGNAL_IMPULSE && k < motion->n; k++)
             moved[k] += signal->amplitude * jump[k];
     }
-    find_energy(march, &after, &potential);
+    ritz_march_energy(march, &after, &potential);
     march->work += after - before;
 }
 
@@ -352,10 +159,12 @@ static void note_energy(const ritz_march *march, double start, int64_t k,
 {
     for (int64_t j = 0; j < s->num_inputs; j++)
         s->u[k * s->num_inputs + j] = u[j];
-    see_outputs(march, u, s->y + k * s->num_outputs);
+    ritz_march_outputs(march, u, s->y + k * s->num_outputs);
+    if (march->diagnose)
+        march->diagnose(march, s->diagnosis + k * s->num_diagnostics);
     if (!s->balance)
         return;
-    find_energy(march, &s->kinetic[k], &s->potential[k]);
+    ritz_march_energy(march, &s->kinetic[k], &s->potential[k]);
     s->dissipated[k] = march->dissipated;
     s->work[k] = march->work;
     s->balance[k] = s->kinetic[k] + s->potential[k] + march->dissipated -
@@ -372,17 +181,17 @@ static bool is_finite(const ritz_march *march)
 }
 
 /* Before the first step; what energy there is before impulses act. */
-static ritz_status begin_run(const ritz_motion *motion,
-                             const ritz_simulation_request *request,
+static ritz_status begin_run(const ritz_simulation_request *request,
                              const double *u, ritz_march *march, double *energy)
 {
+    const ritz_motion *motion = march->motion;
     double kinetic = 0.0, potential = 0.0;
 
     transform_start(motion, request->x0, march->x);
     if (march->v)
         transform_start(motion, request->v0, march->v);
     RITZ_CHECK(balance_massless(motion, u, march->x));
-    find_energy(march, &kinetic, &potential);
+    ritz_march_energy(march, &kinetic, &potential);
     *energy = kinetic + potential;
     push_impulses(motion, request, march);
     if (march->settle)
@@ -390,51 +199,58 @@ static ritz_status begin_run(const ritz_motion *motion,
     return RITZ_OK;
 }
 
-/*
- * Simulate what has become a motion; names are left to the caller.
- *
- * @param[in,out] reach  noted with each time that is written; may be NULL
- */
-static ritz_status run_march(const ritz_motion *motion,
-                             const ritz_simulation_request *request,
-                             int64_t steps, ritz_reach *reach,
-                             ritz_simulation *s)
+ritz_status ritz_march_run(ritz_march *march,
+                           const ritz_simulation_request *request,
+                           ritz_reach *reach, ritz_simulation *s)
 {
-    RITZ_OWN(ritz_march) march = {0};
     RITZ_OWN_ARRAY double *u0 = NULL, *u1 = NULL;
     int64_t every = request->every > 0 ? request->every : 1;
+    int64_t steps = 0;
     double energy = 0.0;
 
-    RITZ_CHECK(make_room(motion, request, steps, s));
+    RITZ_CHECK(ritz_request_steps(request, &steps));
+    RITZ_CHECK(make_room(march, request, steps, s));
     RITZ_CHECK_NEW(u0, s->num_inputs);
     RITZ_CHECK_NEW(u1, s->num_inputs);
-    RITZ_CHECK(ritz_march_new(motion, request->integrator, request->step,
-                              request->rho, &march));
     inputs_at(request, 0, s->num_inputs, u1);
-    RITZ_CHECK(begin_run(motion, request, u1, &march, &energy));
+    RITZ_CHECK(begin_run(request, u1, march, &energy));
     for (int64_t k = 0; k <= steps; k++) {
         double t = (double)k * request->step;
 
         if (k > 0) {
             memcpy(u0, u1, (size_t)s->num_inputs * sizeof *u0);
             inputs_at(request, k, s->num_inputs, u1);
-            RITZ_CHECK(march.advance(
-                &march, u0, request->hold == RITZ_HOLD_ZERO ? u0 : u1));
+            RITZ_CHECK(march->advance(
+                march, u0, request->hold == RITZ_HOLD_ZERO ? u0 : u1));
         }
+        march->steps = k;
         if (k % every != 0)
             continue;
         RITZ_REFUSE_IF(
-            k > 0 && !is_finite(&march), RITZ_ERR_CONVERGENCE,
+            k > 0 && !is_finite(march), RITZ_ERR_CONVERGENCE,
             "the motion has left all bounds after %g s: is the model "
             "stable?",
             t);
         s->seconds[k / every] = t;
-        note_energy(&march, energy, k / every, u1, s);
+        note_energy(march, energy, k / every, u1, s);
         if (reach)
-            note_reach(reach, &march, t);
+            ritz_reach_note(reach, march, t);
         if (k > 0)
             ritz_monitor_step("simulation", k, steps);
     }
+    return RITZ_OK;
+}
+
+ritz_status ritz_simulation_label(ritz_model subject, ritz_simulation *s)
+{
+    const ritz_io io = ritz_model_io(subject);
+
+    RITZ_CHECK_COPY(s->input, io.input, s->num_inputs);
+    RITZ_CHECK_COPY(s->output, io.output, s->num_outputs);
+    if (subject.damping)
+        ritz_damping_print(subject.damping, s->damping);
+    else if (subject.kind == RITZ_MODEL_STATES)
+        memcpy(s->damping, subject.states->damping, sizeof s->damping);
     return RITZ_OK;
 }
 
@@ -444,9 +260,9 @@ ritz_status ritz_simulate_noting(ritz_model subject,
                                  ritz_simulation *out)
 {
     RITZ_OWN(ritz_motion) motion = {0};
+    RITZ_OWN(ritz_march) march = {0};
     RITZ_OWN(ritz_reach) found = {0};
     RITZ_OWN(ritz_simulation) s = {0};
-    ritz_io io; /* borrowed */
     int64_t steps = 0;
 
     RITZ_REFUSE_IF(subject.kind == 0, RITZ_ERR_ARGUMENT,
@@ -455,18 +271,14 @@ ritz_status ritz_simulate_noting(ritz_model subject,
     RITZ_REFUSE_IF(subject.kind == RITZ_MODEL_STATES && subject.damping &&
                        subject.damping->kind != RITZ_DAMPING_NONE,
                    RITZ_ERR_ARGUMENT, "a state space is damped as it was made");
-    io = ritz_model_io(subject);
     RITZ_CHECK(ritz_motion_new(subject, request, &motion));
     motion.energies = energies && motion.form != RITZ_FORM_STATES;
     if (reach)
-        RITZ_CHECK(reach_new(subject, &motion, &found));
-    RITZ_CHECK(run_march(&motion, request, steps, reach ? &found : NULL, &s));
-    RITZ_CHECK_COPY(s.input, io.input, s.num_inputs);
-    RITZ_CHECK_COPY(s.output, io.output, s.num_outputs);
-    if (subject.damping)
-        ritz_damping_print(subject.damping, s.damping);
-    else if (subject.kind == RITZ_MODEL_STATES)
-        memcpy(s.damping, subject.states->damping, sizeof s.damping);
+        RITZ_CHECK(ritz_reach_new(subject, &motion, &found));
+    RITZ_CHECK(ritz_march_new(&motion, request->integrator, request->step,
+                              request->rho, &march));
+    RITZ_CHECK(ritz_march_run(&march, request, reach ? &found : NULL, &s));
+    RITZ_CHECK(ritz_simulation_label(subject, &s));
     RITZ_MOVE(*out, s);
     if (reach)
         RITZ_MOVE(*reach, found);

@@ -45,6 +45,27 @@ static double find_imbalance(const ritz_simulation *s)
     return size > 0.0 ? off / size : 0.0;
 }
 
+/* Least, greatest and last value of each diagnostic. */
+static void describe_diagnostics(cli_run *run, const ritz_simulation *s)
+{
+    if (s->num_diagnostics == 0)
+        return;
+    SINK_ITEMS(run, "diagnostics", j, s->num_diagnostics) {
+        const double *value = s->diagnosis + j;
+        double least = HUGE_VAL, most = -HUGE_VAL, last = 0.0;
+
+        for (int64_t k = 0; k < s->count; k++) {
+            last = value[k * s->num_diagnostics];
+            least = fmin(least, last);
+            most = fmax(most, last);
+        }
+        sink_say(run, "name,least,most,last",
+                 "  %-14s %-20s %.6g to %.6g, %.6g at the end",
+                 j > 0 ? "" : "diagnostics", s->diagnostic[j], least, most,
+                 last);
+    }
+}
+
 ritz_status describe_simulation(cli_run *run, const ritz_simulation *s)
 {
     double end = s->count > 0 ? s->seconds[s->count - 1] : 0.0;
@@ -73,5 +94,6 @@ ritz_status describe_simulation(cli_run *run, const ritz_simulation *s)
     if (s->balance)
         sink_field(run, "energies", "imbalance",
                    "balance to %.1e of the largest", find_imbalance(s));
+    describe_diagnostics(run, s);
     return RITZ_OK;
 }

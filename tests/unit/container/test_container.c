@@ -424,6 +424,9 @@ static void a_simulation_comes_back(void **)
     assert_same(a.dissipated, b.dissipated, a.count, 8);
     assert_same(a.work, b.work, a.count, 8);
     assert_same(a.balance, b.balance, a.count, 8);
+    assert_int_equal(a.num_diagnostics, b.num_diagnostics);
+    assert_same(a.diagnostic, b.diagnostic, a.num_diagnostics, RITZ_NAME_SIZE);
+    assert_same(a.diagnosis, b.diagnosis, a.count * a.num_diagnostics, 8);
     assert_int_equal(a.num_coordinates, b.num_coordinates);
     assert_same(a.q, b.q, a.count * a.num_coordinates, 8);
     assert_same(a.v, b.v, a.count * a.num_coordinates, 8);
