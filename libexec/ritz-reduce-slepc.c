@@ -33,7 +33,11 @@ static ritz_status read_frame(cli_run *run, const char *path, model *out)
         status = ritz_container_summary(path, &summary);
     ritz_container_release();
     RITZ_CHECK(status);
-    model_warn_loads(run, path, summary.num_loads);
+    if (summary.num_loads > 0)
+        cli_warn(run,
+                 "'%s': geometric stiffness of %ld loads is left out by "
+                 "--engine slepc",
+                 path, summary.num_loads);
     ritz_summary_free(&summary);
     out->kind = MODEL_COMPONENT;
     file = path;

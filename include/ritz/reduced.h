@@ -87,9 +87,17 @@ typedef struct ritz_nested {
     ritz_dense value; /* count x num_errors; NaN where not measured */
 } ritz_nested;
 
+/* Geometric stiffness of one unit load, in reduced coordinates. */
+typedef struct ritz_reduced_load {
+    char name[RITZ_NAME_SIZE];
+    ritz_dense KG; /* r x r, symmetric */
+} ritz_reduced_load;
+
 typedef struct ritz_reduced {
     ritz_dense K, M, D, K4; /* r x r; D, K4 {0}: none. D may be unsymmetric */
-    ritz_dampers dampers;   /* as of a component, for r coordinates */
+    int64_t num_loads;
+    ritz_reduced_load *load;
+    ritz_dampers dampers; /* as of a component, for r coordinates */
     ritz_columns columns;
     ritz_origin origin;
     int64_t num_ports;
@@ -199,6 +207,15 @@ double ritz_measures_value(const ritz_measures *measures, const char *name);
 /** Copy all of @p from; what @p out held is freed. */
 ritz_status ritz_measures_copy(const ritz_measures *from, ritz_measures *out);
 
+/** T'KG T of each load; NULL of none. */
+ritz_status ritz_loads_reduce(int64_t count, const ritz_load *load,
+                              const ritz_dense *T, ritz_reduced_load **out);
+
+/** V'KG V of each load, or with @p V NULL a copy; NULL of none. */
+ritz_status ritz_loads_project(int64_t count, const ritz_reduced_load *load,
+                               const ritz_dense *V, ritz_reduced_load **out);
+
+void ritz_reduced_load_free(ritz_reduced_load *load);
 void ritz_nested_free(ritz_nested *nested);
 void ritz_invariants_free(ritz_invariants *invariants);
 void ritz_measures_free(ritz_measures *measures);

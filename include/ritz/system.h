@@ -19,12 +19,14 @@
 typedef struct ritz_configuration {
     char at[RITZ_NAME_SIZE]; /* "clock=60,cone=0" */
     int64_t num_settings;
-    double *setting;      /* one for each sweep of the scene, in its order */
-    int64_t rank;         /* of the constraints */
-    ritz_dense K, M;      /* e x e */
-    ritz_dense D, K4;     /* e x e; {0}: no damping but ritz_system.damping */
-    ritz_dampers dampers; /* of all bodies; K and D hold them */
-    double *lambda;       /* e, ascending; by |lambda| where a dual assembly has
+    double *setting;  /* one for each sweep of the scene, in its order */
+    int64_t rank;     /* of the constraints */
+    ritz_dense K, M;  /* e x e */
+    ritz_dense D, K4; /* e x e; {0}: no damping but ritz_system.damping */
+    int64_t num_loads;
+    ritz_reduced_load *load; /* e x e, of all bodies: "body:load" */
+    ritz_dampers dampers;    /* of all bodies; K and D hold them */
+    double *lambda; /* e, ascending; by |lambda| where a dual assembly has
                        negative eigenvalues  [rad^2/s^2] */
     int64_t num_rigid;
     ritz_io io;           /* for e coordinates */

@@ -46,6 +46,33 @@ static ritz_status project_bodies(const ritz_stage *stage, size_t offset,
     return RITZ_OK;
 }
 
+/* P_k'KG P_k of each load of each body. */
+static ritz_status project_loads(const ritz_stage *stage, const ritz_dense *P,
+                                 ritz_configuration *c)
+{
+    int64_t count = 0;
+
+    for (int64_t k = 0; k < stage->count; k++)
+        count += stage->body[k].num_loads;
+    RITZ_CHECK_NEW(c->load, count);
+    for (int64_t k = 0; k < stage->count; k++) {
+        const ritz_reduced *body = &stage->body[k];
+        RITZ_OWN(ritz_dense) block = {0};
+
+        RITZ_CHECK(ritz_dense_block(P, stage->first[k], body->K.ncol, 0,
+                                    P->ncol, &block));
+        for (int64_t j = 0; j < body->num_loads; j++) {
+            ritz_reduced_load *made = &c->load[c->num_loads++];
+
+            RITZ_CHECK(ritz_body_load_name(stage->scene->component[k].name,
+                                           body->load[j].name, made->name));
+            RITZ_CHECK(
+                ritz_dense_congruence(&body->load[j].KG, &block, &made->KG));
+        }
+    }
+    return RITZ_OK;
+}
+
 /* K and M of the system, sums over bodies and springs. */
 static ritz_status project_pencil(const ritz_stage *stage,
                                   const ritz_springs *springs,
@@ -154,6 +181,7 @@ static ritz_status fill_configuration(const ritz_stage *stage,
     RITZ_CHECK(project_bodies(stage, offsetof(ritz_reduced, D), P, &c->D));
     RITZ_CHECK(ritz_springs_add(springs, true, P, &c->D));
     RITZ_CHECK(project_bodies(stage, offsetof(ritz_reduced, K4), P, &c->K4));
+    RITZ_CHECK(project_loads(stage, P, c));
     RITZ_CHECK(ritz_io_project(&stage->io, P, &c->io));
     RITZ_CHECK(ritz_dampers_project(&stage->dampers, P, &c->dampers));
     return ritz_place_configuration(stage, setting, c);

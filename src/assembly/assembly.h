@@ -247,6 +247,15 @@ ritz_status ritz_dual_assemble(const ritz_stage *stage,
                                ritz_dense *P, ritz_configuration *c);
 
 /**
+ * Name of a body's load in a system, "body:load": containers have it as the
+ * name of a group, in which '/' would begin another one.
+ *
+ * @return RITZ_ERR_ARGUMENT if it is too long
+ */
+ritz_status ritz_body_load_name(const char *body, const char *load,
+                                char out[RITZ_NAME_SIZE]);
+
+/**
  * How many configurations of a stage to work on between two looks at whether to
  * stop: one, or of a small stage some for each thread.
  */

@@ -288,6 +288,47 @@ static ritz_status stack_matrices(const ritz_held *p, size_t offset,
     return RITZ_OK;
 }
 
+/* A matrix of body k in the rows and columns of its dofs among all. */
+static ritz_status place_block(const ritz_held *p, int64_t k,
+                               const ritz_sparse *A, ritz_sparse *out)
+{
+    const int64_t entries = A->colptr[A->ncol];
+
+    RITZ_CHECK(ritz_sparse_new(p->num_dofs, p->num_dofs, entries, out));
+    for (int64_t j = 0; j < A->ncol; j++)
+        out->colptr[p->first[k] + j + 1] = A->colptr[j + 1];
+    for (int64_t j = p->first[k] + A->ncol; j < p->num_dofs; j++)
+        out->colptr[j + 1] = entries;
+    for (int64_t e = 0; e < entries; e++) {
+        out->rowind[e] = p->first[k] + A->rowind[e];
+        out->val[e] = A->val[e];
+    }
+    return RITZ_OK;
+}
+
+/* Geometric stiffness of each load of each body, "body:load". */
+static ritz_status project_loads(const ritz_held *p, const ritz_sparse *T,
+                                 ritz_component *system)
+{
+    int64_t count = 0;
+
+    for (int64_t k = 0; k < p->count; k++)
+        count += p->body[k].num_loads;
+    RITZ_CHECK_NEW(system->load, count);
+    for (int64_t k = 0; k < p->count; k++)
+        for (int64_t j = 0; j < p->body[k].num_loads; j++) {
+            const ritz_load *load = &p->body[k].load[j];
+            ritz_load *made = &system->load[system->num_loads++];
+            RITZ_OWN(ritz_sparse) all = {0};
+
+            RITZ_CHECK(ritz_body_load_name(p->scene->component[k].name,
+                                           load->name, made->name));
+            RITZ_CHECK(place_block(p, k, &load->KG, &all));
+            RITZ_CHECK(ritz_sparse_congruence(&all, T, &made->KG));
+        }
+    return RITZ_OK;
+}
+
 static ritz_status project_matrices(const ritz_held *p, const double *setting,
                                     const ritz_sparse *T,
                                     ritz_component *system)
@@ -315,7 +356,7 @@ static ritz_status project_matrices(const ritz_held *p, const double *setting,
             RITZ_CHECK(ritz_sparse_congruence(&all, T, into));
         ritz_sparse_free(&all);
     }
-    return RITZ_OK;
+    return project_loads(p, T, system);
 }
 
 /*

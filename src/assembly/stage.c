@@ -439,3 +439,14 @@ void ritz_stage_free(ritz_stage *stage)
     ritz_dampers_free(&stage->dampers);
     *stage = (ritz_stage){0};
 }
+
+ritz_status ritz_body_load_name(const char *body, const char *load,
+                                char out[RITZ_NAME_SIZE])
+{
+    const int length = snprintf(out, RITZ_NAME_SIZE, "%s:%s", body, load);
+
+    RITZ_REFUSE_IF(length >= RITZ_NAME_SIZE, RITZ_ERR_ARGUMENT,
+                   "'%s:%s' is longer than %d characters", body, load,
+                   RITZ_NAME_SIZE - 1);
+    return RITZ_OK;
+}

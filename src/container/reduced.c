@@ -159,6 +159,14 @@ static ritz_status settle_reduced(const ritz_place *place)
                         "recovery");
 }
 
+static const ritz_member load_members[] = {
+    {"matrix", MATRIX_DENSE, RITZ_AT(ritz_reduced_load, KG), "r r",
+     "geometric stiffness matrix of a unit load"},
+    {0},
+};
+
+static const ritz_schema load_schema = {.members = load_members};
+
 static const ritz_member members[] = {
     {"damping", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_reduced, damping), "",
      "damping, as `--damping` reads it; may be empty"},
@@ -171,6 +179,8 @@ static const ritz_member members[] = {
      "viscous damping matrix", .optional = ""},
     {"K4", MATRIX_DENSE, RITZ_AT(ritz_reduced, K4), "r r",
      "structural damping matrix, as in K + i K4", .optional = ""},
+    {"KG", LIST, RITZ_LIST(ritz_reduced, load), "l", .optional = "",
+     .some = 'l', .schema = &load_schema},
     {"dampers", PART, RITZ_AT(ritz_reduced, dampers), .optional = "",
      .some = 'd', .schema = &ritz_schema_dampers},
     {"T", MATRIX_DENSE, RITZ_AT(ritz_reduced, T), "n r",
@@ -230,7 +240,8 @@ const ritz_schema ritz_schema_reduced = {
               {'r', .offset = offsetof(ritz_reduced, K.ncol), "K"},
               {'c', .offset = offsetof(ritz_reduced, K.ncol)},
               {'b', .offset = offsetof(ritz_reduced, num_ports)},
-              {'q', .offset = offsetof(ritz_reduced, num_quantities)}},
+              {'q', .offset = offsetof(ritz_reduced, num_quantities)},
+              {'l', .offset = offsetof(ritz_reduced, num_loads)}},
     .members = members,
     .settle = settle_reduced,
 };

@@ -69,6 +69,14 @@ static bool has_momentum(const void *object)
     return ((const ritz_configuration *)object)->momentum.val;
 }
 
+static const ritz_member load_members[] = {
+    {"matrix", MATRIX_DENSE, RITZ_AT(ritz_reduced_load, KG), "e e",
+     "geometric stiffness matrix of a unit load"},
+    {0},
+};
+
+static const ritz_schema load_schema = {.members = load_members};
+
 static const ritz_member configuration_members[] = {
     {"at", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_configuration, at), "",
      "settings of the joints, such as `clock=60,cone=0`"},
@@ -85,6 +93,8 @@ static const ritz_member configuration_members[] = {
      "viscous damping matrix", .optional = ""},
     {"K4", MATRIX_DENSE, RITZ_AT(ritz_configuration, K4), "e e",
      "structural damping matrix, as in K + i K4", .optional = ""},
+    {"KG", LIST, RITZ_LIST(ritz_configuration, load), "l", .optional = "",
+     .some = 'l', .schema = &load_schema},
     {"dampers", PART, RITZ_AT(ritz_configuration, dampers), .optional = "",
      .some = 'd', .schema = &ritz_schema_dampers},
     {"lambda", SET_REAL, RITZ_AT(ritz_configuration, lambda), "e",
@@ -113,7 +123,8 @@ static const ritz_schema configuration_schema = {
     .sizes = {{'e', .offset = offsetof(ritz_configuration, K.ncol), "K"},
               {'c', .offset = offsetof(ritz_configuration, K.ncol)},
               {'w', .offset = offsetof(ritz_configuration, num_settings), "^"},
-              {'b', .offset = offsetof(ritz_configuration, num_blocks), "^"}},
+              {'b', .offset = offsetof(ritz_configuration, num_blocks), "^"},
+              {'l', .offset = offsetof(ritz_configuration, num_loads)}},
     .members = configuration_members,
 };
 

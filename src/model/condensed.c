@@ -75,6 +75,8 @@ ritz_status ritz_reduced_of_configuration(const ritz_system *system,
     RITZ_CHECK(ritz_dense_copy(&at->M, &made.M));
     RITZ_CHECK(copy_optional(&at->D, &made.D));
     RITZ_CHECK(copy_optional(&at->K4, &made.K4));
+    RITZ_CHECK(ritz_loads_project(at->num_loads, at->load, NULL, &made.load));
+    made.num_loads = at->num_loads;
     RITZ_CHECK(ritz_dampers_copy(&at->dampers, &made.dampers));
     RITZ_CHECK(ritz_io_copy(&at->io, &made.io));
     RITZ_CHECK(describe_modes(at, &made.columns));
@@ -255,6 +257,14 @@ ritz_status ritz_component_of_reduced(const ritz_reduced *reduced,
         RITZ_CHECK(ritz_sparse_from_dense(&reduced->D, &made.D));
     if (reduced->K4.val)
         RITZ_CHECK(ritz_sparse_from_dense(&reduced->K4, &made.K4));
+    RITZ_CHECK_NEW(made.load, reduced->num_loads);
+    for (; made.num_loads < reduced->num_loads; made.num_loads++) {
+        const ritz_reduced_load *from = &reduced->load[made.num_loads];
+        ritz_load *to = &made.load[made.num_loads];
+
+        memcpy(to->name, from->name, sizeof to->name);
+        RITZ_CHECK(ritz_sparse_from_dense(&from->KG, &to->KG));
+    }
     RITZ_CHECK(ritz_io_copy(&reduced->io, &made.io));
     RITZ_CHECK(ritz_dampers_copy(&reduced->dampers, &made.dampers));
     memcpy(made.damping, reduced->damping, sizeof made.damping);

@@ -126,6 +126,9 @@ ritz_status ritz_congruences_of(const ritz_component *component,
     RITZ_CHECK(ritz_sparse_project(K4, T, &s.K4));
     if (K4->colptr)
         RITZ_CHECK(find_terms(K4, kind, T, &s.K4_terms));
+    RITZ_CHECK(
+        ritz_loads_reduce(component->num_loads, component->load, T, &s.load));
+    s.num_loads = component->num_loads;
     RITZ_MOVE(*out, s);
     return RITZ_OK;
 }
@@ -139,6 +142,7 @@ void ritz_congruences_free(ritz_congruences *sums)
 
     for (int k = 0; k < MEMBERS; k++)
         ritz_dense_free(all[k]);
+    RITZ_FREE_EACH(ritz_reduced_load, sums->num_loads, sums->load);
     ritz_invariants_free(&sums->invariants);
     *sums = (ritz_congruences){0};
 }

@@ -22,6 +22,8 @@ bool ritz_may_be_rigid(ritz_column_kind kind);
 
 typedef struct ritz_congruences {
     ritz_dense K, M, D, K4; /* r x r, T'KT and so on; {0} of an absent matrix */
+    int64_t num_loads;
+    ritz_reduced_load *load; /* T'KG T of each load */
     /* r x r, |T|'|K||T| in rows and columns that may be rigid, else 0: rounding
        errors of T'KT are some eps times this */
     ritz_dense K_terms, K4_terms;

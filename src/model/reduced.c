@@ -190,6 +190,8 @@ ritz_status ritz_congruences_reduce(const ritz_component *component,
     RITZ_MOVE(reduced.M, sums->M);
     RITZ_MOVE(reduced.D, sums->D);
     RITZ_MOVE(reduced.K4, sums->K4);
+    RITZ_MOVE(reduced.load, sums->load);
+    RITZ_MOVE(reduced.num_loads, sums->num_loads);
     RITZ_MOVE(reduced.invariants, sums->invariants);
     RITZ_CHECK(ritz_dampers_project(&component->dampers, T, &reduced.dampers));
     RITZ_CHECK(map_ports(component, T, &reduced));
@@ -264,6 +266,9 @@ ritz_status ritz_reduced_project(const ritz_reduced *reduced,
         RITZ_CHECK(ritz_dense_project(&reduced->D, V, &second.D));
     if (reduced->K4.val)
         RITZ_CHECK(ritz_dense_congruence(&reduced->K4, V, &second.K4));
+    RITZ_CHECK(
+        ritz_loads_project(reduced->num_loads, reduced->load, V, &second.load));
+    second.num_loads = reduced->num_loads;
     RITZ_CHECK(ritz_dampers_project(&reduced->dampers, V, &second.dampers));
     RITZ_CHECK(project_ports(reduced, V, &second));
     RITZ_CHECK(ritz_io_project(&reduced->io, V, &second.io));
@@ -308,6 +313,7 @@ void ritz_reduced_free(ritz_reduced *reduced)
     ritz_dense_free(&reduced->M);
     ritz_dense_free(&reduced->D);
     ritz_dense_free(&reduced->K4);
+    RITZ_FREE_EACH(ritz_reduced_load, reduced->num_loads, reduced->load);
     ritz_dampers_free(&reduced->dampers);
     ritz_columns_free(&reduced->columns);
     RITZ_FREE_EACH(ritz_port_map, reduced->num_ports, reduced->port);

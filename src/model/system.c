@@ -122,6 +122,8 @@ void ritz_configuration_free(ritz_configuration *configuration)
     ritz_dense_free(&configuration->M);
     ritz_dense_free(&configuration->D);
     ritz_dense_free(&configuration->K4);
+    RITZ_FREE_EACH(ritz_reduced_load, configuration->num_loads,
+                   configuration->load);
     ritz_dense_free(&configuration->momentum);
     ritz_dense_free(&configuration->places);
     ritz_dampers_free(&configuration->dampers);

@@ -193,25 +193,20 @@ json 0 ritz-reduce bar.h5 cb.h5 -o red.h5
 holds '  estimates its errors' 'len(j["estimates"]) > 0 and j["dofs"] == 7 and
     j["dofs_full"] == 21 and j["frequencies_hz"][0] == 0'
 
-# no tool uses geometric stiffness, and each that leaves it out says so
-expect 0 'is stored; no tool uses it yet' ritz-import --stiffness bar.k.mtx \
-    --mass bar.m.mtx --bulk bar.bdf --dofs bar.dofs --port left=1:1 \
-    --input push=21:1 --output-at tip=21:1 --units 'm kg s' \
+# geometric stiffness goes with K and M
+expect 0 'geometric stiffness of 1 loads is stored' ritz-import \
+    --stiffness bar.k.mtx --mass bar.m.mtx --bulk bar.bdf --dofs bar.dofs \
+    --port left=1:1 --input push=21:1 --output-at tip=21:1 --units 'm kg s' \
     --geometric-stiffness bar.k.mtx@spin -o stiff.h5
 expect 0 '' ritz-basis craig-bampton --modes 5 stiff.h5 -o stiff-cb.h5
-expect 0 "warning: 'stiff.h5': geometric stiffness (of 1 load) is left out" \
-    ritz-reduce stiff.h5 stiff-cb.h5 -o stiff-red.h5
-json 0 ritz-reduce stiff.h5 stiff-cb.h5 -o stiff-red.h5
-holds '  in JSON too' '"geometric stiffness" in j["warnings"][0]'
-expect 0 "warning: 'stiff.h5': geometric stiffness (of 1 load) is left out" \
-    ritz-fit stiff.h5 --tolerance frequency=1e-1 --band-hz 0,1 \
-    --methods craig-bampton -o stiff-fit.h5
+expect 0 '' ritz-reduce stiff.h5 stiff-cb.h5 -o stiff-red.h5
+expect 0 'KG/spin' ritz-info stiff-red.h5
 printf 'scene: a bar\ncomponents:\n  bar: {model: stiff.h5, %s}\n' \
     'basis: craig-bampton, modes: 2, attach: [left]' >stiff.yaml
-for how in '' --full; do
-    expect 0 "warning: 'stiff.h5': geometric stiffness (of 1 load) is left" \
-        ritz-assemble $how stiff.yaml -o stiff-system.h5
-done
+expect 0 '' ritz-assemble stiff.yaml -o stiff-system.h5
+expect 0 'bar:spin, geometric stiffness' ritz-info stiff-system.h5
+expect 0 '' ritz-assemble --full stiff.yaml -o stiff-full.h5
+expect 0 'KG/bar:spin' ritz-info stiff-full.h5
 json 0 ritz-reduce bar.h5 cb.h5 -o red.h5
 holds '  nothing is said where there is none' 'j["warnings"] == []'
 expect 1 'is a basis for 21 dofs' ritz-reduce a.h5 cb.h5 -o x.h5

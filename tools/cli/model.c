@@ -207,25 +207,6 @@ ritz_status model_read(cli_run *run, const char *path, int wanted, model *out)
     return RITZ_OK;
 }
 
-void model_warn_loads(cli_run *run, const char *path, int64_t count)
-{
-    if (count > 0)
-        cli_warn(run,
-                 "'%s': geometric stiffness (of %ld load%s) is left out: a "
-                 "component stores it, and no tool uses it yet",
-                 path, count, count > 1 ? "s" : "");
-}
-
-/* A file that cannot be read is refused later, when the scene loads it and
-   names the line. */
-static void warn_of_model(cli_run *run, const char *path)
-{
-    RITZ_OWN(ritz_summary) summary = {0};
-
-    if (ritz_container_summary(path, &summary) == RITZ_OK)
-        model_warn_loads(run, path, summary.num_loads);
-}
-
 ritz_status model_scene(cli_run *run, const char *path, ritz_scene *out)
 {
     RITZ_OWN(ritz_scene) scene = {0};
@@ -234,10 +215,8 @@ ritz_status model_scene(cli_run *run, const char *path, ritz_scene *out)
     RITZ_CHECK(ritz_scene_read(path, &scene));
     for (int64_t k = 0; k < scene.num_components; k++)
         walk_ahead(scene.component[k].model);
-    for (int64_t k = 0; k < scene.num_components; k++) {
+    for (int64_t k = 0; k < scene.num_components; k++)
         RITZ_CHECK_IN(path, cli_input(run, scene.component[k].model));
-        warn_of_model(run, scene.component[k].model);
-    }
     RITZ_MOVE(*out, scene);
     return RITZ_OK;
 }

@@ -122,11 +122,7 @@ void model_nouns(int wanted, char *out, size_t room);
  */
 ritz_status model_read(cli_run *run, const char *path, int wanted, model *out);
 
-/** Warn that a model's geometric stiffness, for @p count loads, is not used. */
-void model_warn_loads(cli_run *run, const char *path, int64_t count);
-
-/** Hash and read a scene, and hash the models that it names. Warn if these have
- * geometric stiffness, which is not used. */
+/** Hash and read a scene, and hash the models that it names. */
 ritz_status model_scene(cli_run *run, const char *path, ritz_scene *out);
 
 /** Warn of a scene with more than 1000 configurations, which a few lines of

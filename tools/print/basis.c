@@ -505,7 +505,6 @@ ritz_status reduce_run(cli_run *run, reduce_options *given)
     RITZ_CHECK(model_read(run, what, MODEL_BASIS, &basis));
     RITZ_CHECK(check_rows(run, &full, &basis.basis));
     RITZ_CHECK(check_configuration(run, &full, &basis.basis));
-    model_warn_loads(run, run->operand[0], full.component.num_loads);
     RITZ_CHECK(
         model_damping(&full, given->model.damping, &given->estimate.damping));
     RITZ_REFUSE_IF(

@@ -84,6 +84,17 @@ static void describe_dense(cli_run *run, const char *name, const ritz_dense *A)
                A->ncol, sum);
 }
 
+static void describe_loads(cli_run *run, int64_t count,
+                           const ritz_reduced_load *load)
+{
+    for (int64_t k = 0; k < count; k++) {
+        char name[RITZ_NAME_SIZE + 4];
+
+        snprintf(name, sizeof name, "KG/%s", load[k].name);
+        describe_dense(run, name, &load[k].KG);
+    }
+}
+
 /* Inputs and outputs by name, these with their limits. */
 static void describe_io(cli_run *run, const ritz_io *io)
 {
@@ -518,6 +529,7 @@ ritz_status describe_reduced(cli_run *run, const ritz_reduced *r)
     describe_dense(run, "D", &r->D);
     describe_skew(run, ritz_dense_skew(&r->D));
     describe_dense(run, "K4", &r->K4);
+    describe_loads(run, r->num_loads, r->load);
     describe_dense(run, "T", &r->T);
     describe_damping(run, r->damping);
     describe_dampers(run, &r->dampers);
@@ -545,6 +557,11 @@ static ritz_status describe_configuration(cli_run *run,
     sink_set(run, "at,dofs,rank", "%s %ld %ld", c->at, c->K.nrow, c->rank);
     describe_hertz(run, *c->at ? c->at : "as joined", c->num_rigid, c->K.nrow,
                    model_negative_squares(c, NULL), hertz);
+    SINK_EACH(run, "loads", k, c->num_loads) {
+        sink_field(run, k > 0 ? "" : "loads", "", "%s, geometric stiffness",
+                   c->load[k].name);
+        sink_add(run, "%s", c->load[k].name);
+    }
     describe_measures(run, "errors", &c->errors, "measured");
     sink_end(run);
     return RITZ_OK;

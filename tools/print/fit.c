@@ -599,7 +599,6 @@ static ritz_status fit_input(fit_run *f, ritz_scene *scene)
                        "'%s' is a component: --components is for scenes", path);
         RITZ_CHECK(model_read(f->run, path, MODEL_COMPONENT, &full));
         RITZ_CHECK_IN(path, model_tune(&full, &given->damper));
-        model_warn_loads(f->run, path, full.component.num_loads);
     } else {
         RITZ_REFUSE_IF(
             given->damper.count > 0 || given->request.attach, RITZ_ERR_ARGUMENT,

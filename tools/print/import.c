@@ -160,9 +160,7 @@ static void say_import(cli_run *run, const ritz_component *component,
                 "freely",
                 done->num_floating);
     if (component->num_loads > 0)
-        cli_say(run,
-                "geometric stiffness of %ld loads is stored; no tool uses it "
-                "yet",
+        cli_say(run, "geometric stiffness of %ld loads is stored",
                 component->num_loads);
     if (component->elements.count + done->num_hidden > 0)
         cli_say(run,

@@ -275,6 +275,16 @@ static void same_nested(const ritz_nested *a, const ritz_nested *b)
     }
 }
 
+static void same_loads(int64_t count, const ritz_reduced_load *a, int64_t count_b,
+                       const ritz_reduced_load *b)
+{
+    assert_int_equal(count, count_b);
+    for (int64_t k = 0; k < count; k++) {
+        assert_string_equal(a[k].name, b[k].name);
+        same_dense(&a[k].KG, &b[k].KG);
+    }
+}
+
 static void compare_reduced(bool full)
 {
     RITZ_OWN(ritz_reduced) a = {0}, b = {0};
@@ -286,6 +296,7 @@ static void compare_reduced(bool full)
     same_dense(&a.M, &b.M);
     same_dense(&a.D, &b.D);
     same_dense(&a.K4, &b.K4);
+    same_loads(a.num_loads, a.load, b.num_loads, b.load);
     same_dampers(&a.dampers, &b.dampers);
     same_recovery(&a.recovery, &b.recovery);
     same_quantities(a.num_quantities, a.quantity, b.num_quantities, b.quantity);
@@ -343,6 +354,7 @@ static void same_configuration(const ritz_configuration *a,
     same_dense(&a->M, &b->M);
     same_dense(&a->D, &b->D);
     same_dense(&a->K4, &b->K4);
+    same_loads(a->num_loads, a->load, b->num_loads, b->load);
     same_dense(&a->momentum, &b->momentum);
     assert_memory_equal(a->rigid, b->rigid, sizeof a->rigid);
     same_dampers(&a->dampers, &b->dampers);
