@@ -13,7 +13,8 @@ static void list_integrators(void)
 static const cli_program program = {
     .name = "ritz-simulate",
     .operands = {{"FILE",
-                  "a component, reduced component, system or state space",
+                  "a component, reduced component, system or state space, or "
+                  "a scene, whose system at --at is simulated",
                   false}},
     .summary = "Time response to inputs and initial values, with its "
                "energies, and what a\nsimulated second costs.",

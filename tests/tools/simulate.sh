@@ -55,6 +55,17 @@ works 'a table is interpolated' awk -F '\t' \
 expect 0 '3 times to 0.4 s' ritz-simulate --seconds 0.4 --step 0.05 --every 4 \
     --input torque=impulse reduced.h5 -o few.h5
 
+# The system of a scene, as ritz-assemble would write it.
+printf 'scene: one\ncomponents:\n  body: {model: reduced.h5}\n%s\n%s\n' \
+    'inputs: [{name: torque, at: body/bearing, component: 6}]' \
+    'outputs: [{name: gyro, at: body/scan, component: 6}]' >scene.yaml
+ritz-assemble -q scene.yaml -o system.h5
+for file in scene.yaml system.h5; do
+    ritz-simulate -q --seconds 1 --step 0.01 --input torque=sine:3 "$file" \
+        -o run.h5 && ritz-export -q --to tsv run.h5 -o "$file.tsv"
+done
+works 'a scene moves as its system' cmp scene.yaml.tsv system.h5.tsv
+
 # Springs of 1e9 N/m: static responses are columns of about 1e-9, and their
 # entries of M are 1e-18 where those of modes are 1. Such an M is not singular.
 awk 'BEGIN {

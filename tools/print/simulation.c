@@ -1,15 +1,10 @@
-#include "print/print.h"
+#include "print/simulation.h"
 
 #include "base/alloc.h"
 #include "base/text.h"
 #include "base/tolerances.h"
 
 #include <inttypes.h>
-
-/* Costs are told at explicit steps so far below their limit. */
-static const double margin = 0.95;
-/* Steps of the band over which costs are told, where no time is given. */
-static const double default_steps = 1000.0;
 
 /* Take words of the command line, and refuse what makes no sense whatever the
    model is. */
@@ -30,15 +25,8 @@ static void take_options(const cli_run *run, simulation_options *given)
         given->accuracy = 1e-3;
 }
 
-/* The model that is simulated, with its inputs and initial values. */
-typedef struct drive {
-    ritz_io io; /* borrowed */
-    ritz_model subject;
-    ritz_signal *signal; /* of each input */
-    double *x0, *v0;     /* NULL: at rest */
-} drive;
-
-static ritz_status take_input(cli_run *run, const char *text, drive *d)
+static ritz_status take_input(cli_run *run, const char *text,
+                              simulation_task *d)
 {
     const char *equals = strchr(text, '=');
     size_t length = equals ? (size_t)(equals - text) : 0;
@@ -59,7 +47,8 @@ static ritz_status take_input(cli_run *run, const char *text, drive *d)
     return RITZ_OK;
 }
 
-static ritz_status take_inputs(cli_run *run, const cli_list *texts, drive *d)
+static ritz_status take_inputs(cli_run *run, const cli_list *texts,
+                               simulation_task *d)
 {
     RITZ_CHECK_NEW(d->signal, d->io.num_inputs + 1);
     for (int k = 0; k < texts->count; k++)
@@ -88,7 +77,7 @@ static ritz_status parse_mode(const char *text, int64_t *mode, double *amount)
     return RITZ_OK;
 }
 
-static ritz_status take_mode(const char *text, drive *d)
+static ritz_status take_mode(const char *text, simulation_task *d)
 {
     const ritz_model *s = &d->subject;
     RITZ_OWN(ritz_pairs) pairs = {0};
@@ -115,7 +104,7 @@ static ritz_status take_mode(const char *text, drive *d)
 }
 
 /* A value, and its rate if there is one, a row. */
-static ritz_status take_values(const char *path, int64_t n, drive *d)
+static ritz_status take_values(const char *path, int64_t n, simulation_task *d)
 {
     static const char blank[] = " \t\r,;\n";
     RITZ_OWN_ARRAY char *text = NULL;
@@ -148,7 +137,7 @@ static ritz_status take_values(const char *path, int64_t n, drive *d)
 }
 
 static ritz_status take_initial(cli_run *run, const char *text, int64_t n,
-                                drive *d)
+                                simulation_task *d)
 {
     static const char mode[] = "mode:";
 
@@ -162,128 +151,27 @@ static ritz_status take_initial(cli_run *run, const char *text, int64_t n,
     return ritz_context(take_values(text, n, d), text);
 }
 
-static void drive_free(drive *d)
+static void simulation_task_free(simulation_task *d)
 {
     RITZ_FREE_EACH(ritz_signal, d->io.num_inputs, d->signal);
-    RITZ_FREE(d->x0, d->v0);
+    RITZ_FREE(d->x0, d->v0, d->setting);
+    model_free(&d->m);
+    ritz_stage_free(&d->stage);
+    ritz_scene_free(&d->scene);
 }
 
-/* Largest relative difference from the same by the modal integrator. */
-static ritz_status measure_difference(ritz_model subject,
-                                      ritz_simulation_request request,
-                                      double *out)
+/* The kind of run that options ask for; NULL: that of one linear model. */
+static ritz_status find_kind(const simulation_options *given,
+                             const simulation_kind **out)
 {
-    RITZ_OWN(ritz_simulation) made = {0}, exact = {0};
-
-    RITZ_CHECK(ritz_simulate(subject, &request, &made));
-    request.integrator = &ritz_integrator_modal;
-    RITZ_CHECK(ritz_simulate(subject, &request, &exact));
-    return ritz_simulation_difference(&exact, &made, out);
-}
-
-static ritz_status say_integrator(cli_run *run, ritz_model subject,
-                                  ritz_simulation_request request)
-{
-    const ritz_integrator *integrator = request.integrator;
-    double spent = 0.0, error = 0.0;
-
-    RITZ_CHECK(
-        ritz_simulate_step_cost(subject, integrator, request.step, &spent));
-    RITZ_CHECK(measure_difference(subject, request, &error));
-    sink_say(run, "name,step,seconds_per_second,error",
-             "%-20s %12.4g %14.3g %12.2e", integrator->name, request.step,
-             spent / request.step, error);
-    return RITZ_OK;
-}
-
-/* A simulator that makes and factors its mass matrix at each step. */
-static ritz_status say_refactored(cli_run *run, const ritz_cost *cost)
-{
-    double factor = 0.0, total = 0.0;
-
-    if (cost->order < 1)
-        return RITZ_OK;
-    RITZ_CHECK(ritz_simulate_refactor_cost(cost->order, &factor));
-    total = cost->seconds_per_second + factor / cost->step;
-    sink_say(
-        run, ",seconds_per_second_refactored_estimate",
-        "\na simulator that factors the mass matrix anew at each such step "
-        "of %s:\nabout %.3g s a second (an estimate: r^3/3 flops a step at "
-        "the rate of one factor)",
-        cost->integrator, total);
-    return RITZ_OK;
-}
-
-static void say_cost_head(const cli_run *run, const ritz_cost *cost)
-{
-    cli_say(run, "order %ld, highest frequency %.6g Hz", cost->order,
-            cost->highest_hz);
-    cli_say(run,
-            "explicit steps are stable up to %.4g s (damping half a step "
-            "old)",
-            cost->step_explicit);
-    cli_say(run,
-            "periods at the band's end come out right to 1e-3 up to "
-            "%.4g s (trapezoidal)\n",
-            cost->step_accurate);
-    cli_say(run, "%-20s %12s %14s %12s", "integrator", "step, s", "s a second",
-            "error");
-}
-
-/* Where nothing is asked for: all inputs sweep from 0 Hz to the band's end. */
-static void sweep_inputs(const ritz_cost *cost, const double band_hz[2],
-                         drive *d)
-{
-    double end = band_hz[1] > 0.0 ? band_hz[1] : fmax(cost->highest_hz, 1.0);
-
-    for (int64_t j = 0; j < d->io.num_inputs; j++)
-        d->signal[j] = (ritz_signal){
-            .kind = RITZ_SIGNAL_CHIRP, .amplitude = 1.0, .hertz = {0.0, end}};
-}
-
-/* The cost of a model, in the line of --record. */
-static ritz_status record_cost(cli_run *run, ritz_model subject,
-                               const double band_hz[2], ritz_cost *cost)
-{
-    RITZ_CHECK(ritz_simulate_cost(subject, band_hz, cost));
-    sink_open(run, run->line);
-    model_set_cost(run, cost);
-    sink_end(run);
-    return RITZ_OK;
-}
-
-/* All integrators at the step that each needs: cost of a second, and error
-   against modal. */
-static ritz_status say_costs(cli_run *run, const simulation_options *given,
-                             const model *m, const double band_hz[2], drive *d)
-{
-    ritz_cost cost = {0};
-    ritz_simulation_request request = RITZ_SIMULATION_NONE;
-
-    RITZ_REFUSE_IF(d->subject.kind != RITZ_MODEL_DENSE, RITZ_ERR_ARGUMENT,
-                   "--cost is of reduced components and systems");
-    RITZ_CHECK(record_cost(run, d->subject, band_hz, &cost));
-    model_set_cost(run, &cost);
-    say_cost_head(run, &cost);
-    if (given->input.count == 0 && !given->initial)
-        sweep_inputs(&cost, band_hz, d);
-    request.signal = d->signal;
-    request.x0 = d->x0;
-    request.v0 = d->v0;
-    request.seconds = given->seconds > 0.0 ? given->seconds
-                                           : default_steps * cost.step_accurate;
-    sink_list(run, "integrators");
-    for (const ritz_integrator *const *i = ritz_integrators; *i; i++) {
-        request.integrator = *i;
-        request.step = cost.step_accurate;
-        if ((*i)->is_explicit)
-            request.step = fmin(request.step, margin * cost.step_explicit);
-        RITZ_CHECK_IN((*i)->name, say_integrator(run, d->subject, request));
+    *out = NULL;
+    for (const simulation_kind *k = simulation_kinds; k->option; k++) {
+        if (!k->asked(given))
+            continue;
+        RITZ_REFUSE_IF(*out, RITZ_ERR_ARGUMENT, "%s or %s, one of them",
+                       (*out)->option, k->option);
+        *out = k;
     }
-    sink_end(run);
-    RITZ_CHECK(say_refactored(run, &cost));
-    cli_record(run, m->kind == MODEL_REDUCED ? m->reduced.origin.method : "",
-               ritz_model_order(model_reference(m)));
     return RITZ_OK;
 }
 
@@ -326,9 +214,28 @@ static ritz_status warn_of_damping(cli_run *run, ritz_model subject,
     return RITZ_OK;
 }
 
-static ritz_status
-simulate_response(cli_run *run, const simulation_options *given, const drive *d)
+/* One linear model, with the step that was given or that an accuracy needs. */
+static ritz_status simulate_model(const simulation_task *d,
+                                  const ritz_simulation_request *request,
+                                  ritz_accuracy *reached, ritz_simulation *out)
 {
+    const simulation_options *given = d->given;
+
+    if (given->step == 0.0) {
+        RITZ_CHECK(ritz_simulate_accurate(d->subject, request, given->accuracy,
+                                          reached, out));
+        cli_record_error(d->run, "integration", reached->error);
+        warn_of_rounding(d->run, given->accuracy, reached, out);
+    } else {
+        RITZ_CHECK(ritz_simulate(d->subject, request, out));
+    }
+    return warn_of_damping(d->run, d->subject, request);
+}
+
+static ritz_status simulate_response(simulation_task *d)
+{
+    cli_run *run = d->run;
+    const simulation_options *given = d->given;
     ritz_simulation_request request = {
         .integrator = given->integrator,
         .seconds = given->seconds,
@@ -345,19 +252,17 @@ simulate_response(cli_run *run, const simulation_options *given, const drive *d)
     RITZ_OWN(model) made = {.kind = MODEL_SIMULATION};
     ritz_simulation *s = &made.simulation;
     ritz_accuracy reached = {.left = -1};
+    const simulation_kind *kind = NULL;
 
     RITZ_REFUSE_IF(given->input.count == 0 && !given->initial,
                    RITZ_ERR_ARGUMENT,
                    "nothing moves it: give --input NAME=SIGNAL or --initial");
-    if (given->step == 0.0) {
-        RITZ_CHECK(ritz_simulate_accurate(d->subject, &request, given->accuracy,
-                                          &reached, s));
-        cli_record_error(run, "integration", reached.error);
-        warn_of_rounding(run, given->accuracy, &reached, s);
-    } else {
-        RITZ_CHECK(ritz_simulate(d->subject, &request, s));
-    }
-    RITZ_CHECK(warn_of_damping(run, d->subject, &request));
+    RITZ_CHECK(find_kind(given, &kind));
+    RITZ_REFUSE_IF(kind && given->step == 0.0, RITZ_ERR_ARGUMENT,
+                   "%s needs --step: no step is chosen by an accuracy",
+                   kind->option);
+    RITZ_CHECK(kind ? kind->simulate(d, &request, s)
+                    : simulate_model(d, &request, &reached, s));
     RITZ_CHECK(describe_output(run, &made));
     if (given->step == 0.0)
         sink_field(run, "accurate to", "error",
@@ -381,31 +286,55 @@ static void warn_of_forces(cli_run *run, const model *m)
                  count, 2.0 * RITZ_PI * first_hz);
 }
 
+/* The bodies of a scene, and its system at the settings of --at. */
+static ritz_status read_scene(simulation_task *d)
+{
+    const char *at = d->given->model.at ? d->given->model.at : "";
+    const char *path = d->run->operand[0];
+
+    RITZ_CHECK(model_scene(d->run, path, &d->scene));
+    RITZ_CHECK_NEW(d->setting, d->scene.num_sweeps);
+    RITZ_CHECK_IN("--at", ritz_scene_settings(&d->scene, at, d->setting));
+    RITZ_CHECK(ritz_stage_new(&d->scene, &d->stage));
+    RITZ_CHECK(ritz_assemble(&d->stage, at, &d->m.system));
+    d->m.kind = MODEL_SYSTEM;
+    return RITZ_OK;
+}
+
+static ritz_status read_subject(simulation_task *d)
+{
+    const char *path = d->run->operand[0];
+
+    if (ritz_container_seems(path))
+        RITZ_CHECK(model_read(d->run, path, MODEL_DYNAMIC, &d->m));
+    else
+        RITZ_CHECK(read_scene(d));
+    RITZ_CHECK(model_settle(&d->m, path, &d->given->model));
+    warn_of_forces(d->run, &d->m);
+    d->subject = model_reference(&d->m);
+    d->io = ritz_model_io(d->subject);
+    return RITZ_OK;
+}
+
 ritz_status simulation_run(cli_run *run, simulation_options *given)
 {
     const char *path = run->operand[0];
     const double *band_hz = given->band_hz;
-    RITZ_OWN(model) m = {0};
-    RITZ_OWN(drive) d = {0};
+    RITZ_OWN(simulation_task) d = {.run = run, .given = given};
     ritz_cost cost = {0};
 
     take_options(run, given);
-    RITZ_CHECK(model_read(run, path, MODEL_DYNAMIC, &m));
-    RITZ_CHECK(model_settle(&m, path, &given->model));
-    warn_of_forces(run, &m);
-    d.io = ritz_model_io(model_reference(&m));
-    d.subject = model_reference(&m);
-    if (m.kind == MODEL_SYSTEM && !(band_hz[1] > 0.0))
-        band_hz = m.system.band_hz;
+    RITZ_CHECK(read_subject(&d));
+    if (d.m.kind == MODEL_SYSTEM && !(band_hz[1] > 0.0))
+        band_hz = d.m.system.band_hz;
     RITZ_CHECK_IN(path, take_inputs(run, &given->input, &d));
-    RITZ_CHECK_IN(path,
-                  take_initial(run, given->initial,
-                               ritz_model_order(model_reference(&m)), &d));
+    RITZ_CHECK_IN(path, take_initial(run, given->initial,
+                                     ritz_model_order(d.subject), &d));
     if (run->output)
-        RITZ_CHECK_IN(path, simulate_response(run, given, &d));
+        RITZ_CHECK_IN(path, simulate_response(&d));
     if (given->cost)
-        return ritz_context(say_costs(run, given, &m, band_hz, &d), path);
+        return ritz_context(simulation_say_costs(&d, band_hz), path);
     if (run->record && d.subject.kind == RITZ_MODEL_DENSE)
-        return record_cost(run, d.subject, band_hz, &cost);
+        return simulation_record_cost(run, d.subject, band_hz, &cost);
     return RITZ_OK;
 }
