@@ -56,6 +56,9 @@ int main(int argc, char **argv)
         CLI_FLAG("coordinates", &given.coordinates,
                  "store the coordinates of a reduced component or system too, "
                  "for ritz-recover"),
+        CLI_TEXT("checkpoint", &given.checkpoint, "FILE",
+                 "keep what is done in FILE every half minute or so; the same "
+                 "command continues from it"),
         CLI_FLAG("cost", &given.cost,
                  "report what a simulated second costs, by each integrator"),
         CLI_PAIR("band-hz", given.band_hz, "F,F",
@@ -68,7 +71,11 @@ int main(int argc, char **argv)
         {0},
     };
     cli_run run;
+    int status = 0;
 
     cli_parse(&program, options, argc, argv, &run);
-    return cli_finish(&run, simulation_run(&run, &given));
+    status = cli_finish(&run, simulation_run(&run, &given));
+    if (status == 0)
+        simulation_remove_checkpoint(&given);
+    return status;
 }

@@ -76,6 +76,7 @@ typedef struct ritz_stamp {
     /* the commands that made and measured the exported model, for certificates;
        containers do not store it; NULL: not known */
     const char *source;
+    bool now; /* the file appears at once, though others are held back */
 } ritz_stamp;
 
 /* What can be said of any container without reading its matrices. */

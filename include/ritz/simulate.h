@@ -101,6 +101,13 @@ typedef struct ritz_simulation_request {
     const double *x0, *v0;     /* of the model's coordinates; NULL: at rest.
                                   Of a state space x0 are its states */
     bool coordinates;          /* store the coordinates of a dense model */
+    bool (*stop)(void *context); /* asked before each step; true ends the run
+                                    early. NULL: it runs to its end */
+    void *context;
+    /* A run of the same model and request that ended early: it is continued,
+       and yields the bits that it would have yielded without an end. NULL: from
+       the start */
+    const struct ritz_simulation *from;
 } ritz_simulation_request;
 
 #define RITZ_SIMULATION_NONE                                                   \
@@ -132,6 +139,8 @@ typedef struct ritz_simulation {
     double *diagnosis;                  /* diagnosis[k * num_diagnostics + j] */
     int64_t num_coordinates; /* of the model; 0: they are not stored */
     double *q, *v, *a;       /* q, q' and q'': q[k * num_coordinates + j] */
+    int64_t num_state;       /* 0: the run came to its end */
+    double *state;           /* what it is continued from */
     char integrator[RITZ_NAME_SIZE];
     char hold[RITZ_NAME_SIZE]; /* "first", "zero" */
     double step;
@@ -152,9 +161,13 @@ typedef struct ritz_simulation {
  * An impulse moves a state at once; what of it is in an output directly, as in
  * an acceleration does, is an impulse too and left out.
  *
+ * A run that request->stop ends early is no failure: it has the times up to
+ * there and a state.
+ *
  * @return RITZ_ERR_ARGUMENT if the step is beyond an explicit integrator's
  *         limit (which it names), if there is structural damping, if a motion
- *         without mass is damped, or the request makes no sense;
+ *         without mass is damped, if request->from is not of this model and
+ *         request, or the request makes no sense;
  *         RITZ_ERR_CONVERGENCE if the motion leaves all bounds
  * @cost   modal: O(r^3) once and O(r) a step, O(r^2) if D couples modes;
  *         the others O(r^3) once and O(r^2) a step; of a full component one
@@ -186,8 +199,11 @@ typedef struct ritz_accuracy {
  * |x| + |cv| |x'| + |ca| |x''|, |x|^2 = x'M x, |c|^2 = c M^-1 c' with the
  * diagonal of M, so that no unit matters; of a state space sum |c_j| |x_j|.
  *
+ * Only the last run, with the step that was found, may end early or be
+ * continued.
+ *
  * @param[out] reached  may be NULL
- * @return RITZ_ERR_CONVERGENCE if no step with which there are 2^23 of them,
+ * @return RITZ_ERR_CONVERGENCE if request->stop ends the search, or if no step with which there are 2^23 of them,
  *         and 2^28 values, reaches it
  */
 ritz_status ritz_simulate_accurate(ritz_model subject,

@@ -237,19 +237,37 @@ static ritz_status add_input(const char *path, input *file)
     return RITZ_OK;
 }
 
+/* Several threads may read files. */
+static pthread_mutex_t inputs_lock = PTHREAD_MUTEX_INITIALIZER;
+
 ritz_status ritz_draft_protect(const char *path)
 {
-    static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
     input file = {0};
     ritz_status status = RITZ_OK;
 
     if (!held.active || stat(path, &file.file) != 0 ||
         !S_ISREG(file.file.st_mode))
         return RITZ_OK;
-    pthread_mutex_lock(&lock); /* several threads may read files */
+    pthread_mutex_lock(&inputs_lock);
     status = add_input(path, &file);
-    pthread_mutex_unlock(&lock);
+    pthread_mutex_unlock(&inputs_lock);
     return status;
+}
+
+void ritz_draft_unprotect(const char *path)
+{
+    struct stat there = {0};
+
+    if (stat(path, &there) != 0)
+        return;
+    pthread_mutex_lock(&inputs_lock);
+    for (int64_t k = 0; k < held.num_inputs; k++)
+        if (same_file(&there, &held.input[k].file)) {
+            free(held.input[k].path);
+            held.input[k] = held.input[--held.num_inputs];
+            break;
+        }
+    pthread_mutex_unlock(&inputs_lock);
 }
 
 ritz_status ritz_draft_check(const char *path)

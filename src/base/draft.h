@@ -75,6 +75,10 @@ void ritz_draft_hold(void);
  */
 ritz_status ritz_draft_protect(const char *path);
 
+/** Undo ritz_draft_protect for a file that is read and then replaced, such as a
+ * checkpoint. */
+void ritz_draft_unprotect(const char *path);
+
 /**
  * Whether a file may be written to @p path.
  *

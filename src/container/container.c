@@ -63,7 +63,8 @@ static ritz_status write_container(const char *path, const ritz_schema *schema,
     RITZ_CHECK(ritz_schema_move(
         &(ritz_place){.at = file, .schema = schema, .object = object}));
     RITZ_CHECK(ritz_h5_finish(&file));
-    return ritz_draft_publish(&draft);
+    return stamp->now ? ritz_draft_publish_now(&draft)
+                      : ritz_draft_publish(&draft);
 }
 
 ritz_status ritz_schema_open(const char *path, char kind[RITZ_NAME_SIZE],

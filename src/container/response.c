@@ -141,6 +141,10 @@ static const ritz_member simulation_members[] = {
      .some = 'd'},
     {"diagnostics/values", SET_REAL, RITZ_AT(ritz_simulation, diagnosis), "k d",
      "these values", .optional = "diagnostics", .some = 'd'},
+    {"state", SET_REAL, RITZ_AT(ritz_simulation, state), "z",
+     "what a run that ended early is continued from: steps taken, energies, "
+     "coordinates and rates as they are integrated, memory of the integrator",
+     .optional = "", .some = 'z'},
     {"coordinates/q", SET_REAL, RITZ_AT(ritz_simulation, q), "k c",
      "coordinates of the model, of `--coordinates`", .optional = "coordinates",
      .some = 'c'},
@@ -163,7 +167,8 @@ const ritz_schema ritz_schema_simulation = {
               {'d', .offset = offsetof(ritz_simulation, num_diagnostics),
                "diagnostics/names"},
               {'c', .offset = offsetof(ritz_simulation, num_coordinates),
-               "coordinates/q"}},
+               "coordinates/q"},
+              {'z', .offset = offsetof(ritz_simulation, num_state), "state"}},
     .members = simulation_members,
     .settle = settle_simulation,
 };

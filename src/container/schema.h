@@ -98,7 +98,7 @@ typedef struct ritz_size {
     int64_t (*count)(const void *object); /* instead of a field */
 } ritz_size;
 
-enum { RITZ_MOST_SIZES = 6 };
+enum { RITZ_MOST_SIZES = 8 };
 
 struct ritz_schema {
     const char *name;   /* `ritz_kind`, or of a part */

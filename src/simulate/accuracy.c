@@ -78,12 +78,17 @@ static ritz_status measure_errors(ritz_model subject,
     RITZ_OWN(ritz_reach) reach = {0};
 
     coarse.every = 1;
+    coarse.from = fine.from = NULL;
     fine.step = 0.5 * request->step;
     fine.every = 2;
     if (subject.kind != RITZ_MODEL_COMPONENT)
         fine.integrator = &ritz_integrator_modal;
     RITZ_CHECK(ritz_simulate_noting(subject, &coarse, false, NULL, &made));
     RITZ_CHECK(ritz_simulate_noting(subject, &fine, false, &reach, &exact));
+    RITZ_REFUSE_IF(made.num_state > 0 || exact.num_state > 0,
+                   RITZ_ERR_CONVERGENCE,
+                   "interrupted while the step was chosen: with --step what a "
+                   "run has done is kept");
     judge_outputs(&exact, &made, &reach, tolerance, t);
     return RITZ_OK;
 }

@@ -199,46 +199,192 @@ static ritz_status begin_run(const ritz_simulation_request *request,
     return RITZ_OK;
 }
 
+/* Runs that end early, and are continued. Their state: steps taken, the energy
+   at the start, what was dissipated, work, x, v and the memory of the
+   integrator. */
+enum { SUMS = 4 };
+
+static int64_t count_state(const ritz_march *march)
+{
+    const int64_t n = march->motion->n;
+
+    return SUMS + n + (march->v ? n : 0) + march->num_memory;
+}
+
+/* Copy the state to @p state, or back from it. */
+static void move_state(bool back, ritz_march *march, double *energy,
+                       double *state)
+{
+    const int64_t n = march->motion->n;
+    double steps = (double)march->steps;
+    const struct {
+        double *at;
+        int64_t count;
+    } parts[] = {{&steps, 1},
+                 {energy, 1},
+                 {&march->dissipated, 1},
+                 {&march->work, 1},
+                 {march->x, n},
+                 {march->v, march->v ? n : 0},
+                 {march->memory, march->num_memory}};
+
+    for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) {
+        const size_t size = (size_t)parts[k].count * sizeof(double);
+
+        if (size > 0 && back)
+            memcpy(parts[k].at, state, size);
+        else if (size > 0)
+            memcpy(state, parts[k].at, size);
+        state += parts[k].count;
+    }
+    march->steps = (int64_t)steps;
+}
+
+/* The run ends here: `count` times are filled. */
+static ritz_status end_early(ritz_march *march, double energy, int64_t count,
+                             ritz_simulation *s)
+{
+    s->count = count;
+    s->num_state = count_state(march);
+    RITZ_CHECK_NEW(s->state, s->num_state);
+    move_state(false, march, &energy, s->state);
+    return RITZ_OK;
+}
+
+/* Outputs of time k, behind them the coordinates and their rates. */
+static void copy_outputs(const ritz_simulation *from, int64_t k,
+                         ritz_simulation *s)
+{
+    const int64_t n = from->num_coordinates;
+    const double *const parts[] = {from->q, from->v, from->a};
+    double *y = s->y + k * s->num_outputs;
+
+    memcpy(y, from->y + k * from->num_outputs,
+           (size_t)from->num_outputs * sizeof *y);
+    y += from->num_outputs;
+    for (int j = 0; n > 0 && j < 3; j++, y += n)
+        memcpy(y, parts[j] + k * n, (size_t)n * sizeof *y);
+}
+
+/* All that an earlier run has stored. */
+static void copy_times(const ritz_simulation *from, ritz_simulation *s)
+{
+    const size_t times = (size_t)from->count * sizeof(double);
+    const double *const energies[] = {from->kinetic, from->potential,
+                                      from->dissipated, from->work,
+                                      from->balance};
+    double *const into[] = {s->kinetic, s->potential, s->dissipated, s->work,
+                            s->balance};
+
+    memcpy(s->seconds, from->seconds, times);
+    memcpy(s->u, from->u, times * (size_t)s->num_inputs);
+    memcpy(s->diagnosis, from->diagnosis, times * (size_t)s->num_diagnostics);
+    for (int64_t k = 0; k < from->count; k++)
+        copy_outputs(from, k, s);
+    for (int e = 0; s->balance && e < 5; e++)
+        memcpy(into[e], energies[e], times);
+}
+
+/* Whether a run that ended early is one of this march and request. */
+static bool is_same_run(const ritz_march *march,
+                        const ritz_simulation_request *request, int64_t steps,
+                        const ritz_simulation *from, const ritz_simulation *s)
+{
+    const int64_t every = request->every > 0 ? request->every : 1;
+    const double taken = from->num_state > 0 ? from->state[0] : -1.0;
+
+    return from->num_state == count_state(march) && from->step == s->step &&
+           from->num_inputs == s->num_inputs &&
+           from->num_outputs + 3 * from->num_coordinates == s->num_outputs &&
+           from->num_diagnostics == s->num_diagnostics &&
+           (from->balance != NULL) == (s->balance != NULL) &&
+           strcmp(from->integrator, s->integrator) == 0 &&
+           strcmp(from->hold, s->hold) == 0 && taken >= 0.0 &&
+           taken <= (double)steps && from->count == (int64_t)taken / every + 1;
+}
+
+static ritz_status resume_run(const ritz_simulation_request *request,
+                              int64_t steps, ritz_march *march, double *energy,
+                              ritz_simulation *s)
+{
+    const ritz_simulation *from = request->from;
+
+    RITZ_REFUSE_IF(!is_same_run(march, request, steps, from, s),
+                   RITZ_ERR_ARGUMENT,
+                   "the run that is to be continued has another model, step, "
+                   "integrator or outputs");
+    copy_times(from, s);
+    move_state(true, march, energy, from->state);
+    return RITZ_OK;
+}
+
+/* What is stored with the present time. */
+static ritz_status store_time(const ritz_simulation_request *request,
+                              const ritz_march *march, double energy,
+                              const double *u, ritz_reach *reach,
+                              ritz_simulation *s)
+{
+    const int64_t every = request->every > 0 ? request->every : 1;
+    const int64_t k = march->steps / every;
+    const double t = (double)march->steps * request->step;
+
+    RITZ_REFUSE_IF(march->steps > 0 && !is_finite(march), RITZ_ERR_CONVERGENCE,
+                   "the motion has left all bounds after %g s: is the model "
+                   "stable?",
+                   t);
+    s->seconds[k] = t;
+    note_energy(march, energy, k, u, s);
+    if (reach)
+        ritz_reach_note(reach, march, t);
+    return RITZ_OK;
+}
+
+/* From the present time to the end. */
+static ritz_status take_steps(ritz_march *march,
+                              const ritz_simulation_request *request,
+                              int64_t steps, double energy, ritz_reach *reach,
+                              ritz_simulation *s)
+{
+    const int64_t every = request->every > 0 ? request->every : 1;
+    RITZ_OWN_ARRAY double *u0 = NULL, *u1 = NULL;
+
+    RITZ_CHECK_NEW(u0, s->num_inputs);
+    RITZ_CHECK_NEW(u1, s->num_inputs);
+    inputs_at(request, march->steps, s->num_inputs, u1);
+    while (march->steps < steps) {
+        if (request->stop && request->stop(request->context))
+            return end_early(march, energy, march->steps / every + 1, s);
+        memcpy(u0, u1, (size_t)s->num_inputs * sizeof *u0);
+        inputs_at(request, march->steps + 1, s->num_inputs, u1);
+        RITZ_CHECK(march->advance(march, u0,
+                                  request->hold == RITZ_HOLD_ZERO ? u0 : u1));
+        march->steps++;
+        ritz_monitor_step("simulation", march->steps, steps);
+        if (march->steps % every == 0)
+            RITZ_CHECK(store_time(request, march, energy, u1, reach, s));
+    }
+    return RITZ_OK;
+}
+
 ritz_status ritz_march_run(ritz_march *march,
                            const ritz_simulation_request *request,
                            ritz_reach *reach, ritz_simulation *s)
 {
-    RITZ_OWN_ARRAY double *u0 = NULL, *u1 = NULL;
-    int64_t every = request->every > 0 ? request->every : 1;
+    RITZ_OWN_ARRAY double *u = NULL;
     int64_t steps = 0;
     double energy = 0.0;
 
     RITZ_CHECK(ritz_request_steps(request, &steps));
     RITZ_CHECK(make_room(march, request, steps, s));
-    RITZ_CHECK_NEW(u0, s->num_inputs);
-    RITZ_CHECK_NEW(u1, s->num_inputs);
-    inputs_at(request, 0, s->num_inputs, u1);
-    RITZ_CHECK(begin_run(request, u1, march, &energy));
-    for (int64_t k = 0; k <= steps; k++) {
-        double t = (double)k * request->step;
-
-        if (k > 0) {
-            memcpy(u0, u1, (size_t)s->num_inputs * sizeof *u0);
-            inputs_at(request, k, s->num_inputs, u1);
-            RITZ_CHECK(march->advance(
-                march, u0, request->hold == RITZ_HOLD_ZERO ? u0 : u1));
-        }
-        march->steps = k;
-        if (k % every != 0)
-            continue;
-        RITZ_REFUSE_IF(
-            k > 0 && !is_finite(march), RITZ_ERR_CONVERGENCE,
-            "the motion has left all bounds after %g s: is the model "
-            "stable?",
-            t);
-        s->seconds[k / every] = t;
-        note_energy(march, energy, k / every, u1, s);
-        if (reach)
-            ritz_reach_note(reach, march, t);
-        if (k > 0)
-            ritz_monitor_step("simulation", k, steps);
+    if (request->from) {
+        RITZ_CHECK(resume_run(request, steps, march, &energy, s));
+    } else {
+        RITZ_CHECK_NEW(u, s->num_inputs);
+        inputs_at(request, 0, s->num_inputs, u);
+        RITZ_CHECK(begin_run(request, u, march, &energy));
+        RITZ_CHECK(store_time(request, march, energy, u, reach, s));
     }
-    return RITZ_OK;
+    return take_steps(march, request, steps, energy, reach, s);
 }
 
 ritz_status ritz_simulation_label(ritz_model subject, ritz_simulation *s)

@@ -339,7 +339,8 @@ ritz_status recover_run(cli_run *run, const recover_options *given);
 typedef struct simulation_options {
     const char *method, *hold; /* words of the command line */
     const ritz_integrator *integrator;
-    const char *initial; /* "mode:K*A" or a file; NULL: at rest */
+    const char *initial;    /* "mode:K*A" or a file; NULL: at rest */
+    const char *checkpoint; /* NULL: none */
     double seconds, step, accuracy, rho, up_to_hz;
     double band_hz[2]; /* 0, 0: not given */
     int64_t every;
@@ -350,6 +351,9 @@ typedef struct simulation_options {
 
 /** Compute the response, if there is an output, and costs, if asked for. */
 ritz_status simulation_run(cli_run *run, simulation_options *given);
+
+/** Remove the checkpoint of a run whose output is in place. */
+void simulation_remove_checkpoint(const simulation_options *given);
 
 /* --- ritz-verify ---------------------------------------------------------- */
 

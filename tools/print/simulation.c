@@ -21,6 +21,10 @@ static void take_options(const cli_run *run, simulation_options *given)
         cli_refuse(program, "how long? give --seconds");
     if (given->step > 0.0 && given->accuracy > 0.0)
         cli_refuse(program, "--step or --accuracy, one of them");
+    if (given->checkpoint && !(given->step > 0.0))
+        cli_refuse(program, "--checkpoint needs --step");
+    if (given->checkpoint && !run->output)
+        cli_refuse(program, "--checkpoint needs -o");
     if (given->accuracy == 0.0)
         given->accuracy = 1e-3;
 }
@@ -215,17 +219,17 @@ static ritz_status warn_of_damping(cli_run *run, ritz_model subject,
 }
 
 /* One linear model, with the step that was given or that an accuracy needs. */
-static ritz_status simulate_model(const simulation_task *d,
+static ritz_status simulate_model(simulation_task *d,
                                   const ritz_simulation_request *request,
-                                  ritz_accuracy *reached, ritz_simulation *out)
+                                  ritz_simulation *out)
 {
     const simulation_options *given = d->given;
 
     if (given->step == 0.0) {
         RITZ_CHECK(ritz_simulate_accurate(d->subject, request, given->accuracy,
-                                          reached, out));
-        cli_record_error(d->run, "integration", reached->error);
-        warn_of_rounding(d->run, given->accuracy, reached, out);
+                                          &d->reached, out));
+        cli_record_error(d->run, "integration", d->reached.error);
+        warn_of_rounding(d->run, given->accuracy, &d->reached, out);
     } else {
         RITZ_CHECK(ritz_simulate(d->subject, request, out));
     }
@@ -251,7 +255,6 @@ static ritz_status simulate_response(simulation_task *d)
     };
     RITZ_OWN(model) made = {.kind = MODEL_SIMULATION};
     ritz_simulation *s = &made.simulation;
-    ritz_accuracy reached = {.left = -1};
     const simulation_kind *kind = NULL;
 
     RITZ_REFUSE_IF(given->input.count == 0 && !given->initial,
@@ -261,13 +264,13 @@ static ritz_status simulate_response(simulation_task *d)
     RITZ_REFUSE_IF(kind && given->step == 0.0, RITZ_ERR_ARGUMENT,
                    "%s needs --step: no step is chosen by an accuracy",
                    kind->option);
-    RITZ_CHECK(kind ? kind->simulate(d, &request, s)
-                    : simulate_model(d, &request, &reached, s));
+    RITZ_CHECK(simulation_long_run(d, &request,
+                                   kind ? kind->simulate : simulate_model, s));
     RITZ_CHECK(describe_output(run, &made));
     if (given->step == 0.0)
         sink_field(run, "accurate to", "error",
                    "%.1e of each output's largest, by half the step",
-                   reached.error);
+                   d->reached.error);
     cli_record(run, s->integrator, s->order);
     return RITZ_OK;
 }
@@ -320,7 +323,8 @@ ritz_status simulation_run(cli_run *run, simulation_options *given)
 {
     const char *path = run->operand[0];
     const double *band_hz = given->band_hz;
-    RITZ_OWN(simulation_task) d = {.run = run, .given = given};
+    RITZ_OWN(simulation_task)
+    d = {.run = run, .given = given, .reached = {.left = -1}};
     ritz_cost cost = {0};
 
     take_options(run, given);

@@ -18,27 +18,42 @@ typedef struct simulation_task {
     ritz_stage stage; /* of the scene: its bodies, reduced */
     double *setting;  /* of the scene's sweeps, as --at says */
     ritz_model subject;
-    ritz_io io;          /* of the subject, borrowed */
-    ritz_signal *signal; /* of each input */
-    double *x0, *v0;     /* of the subject; NULL: at rest */
+    ritz_io io;            /* of the subject, borrowed */
+    ritz_signal *signal;   /* of each input */
+    double *x0, *v0;       /* of the subject; NULL: at rest */
+    ritz_accuracy reached; /* of a run whose step was chosen by it */
 } simulation_task;
+
+/** One run of a task: of one linear model, or of a kind. */
+typedef ritz_status simulation_function(simulation_task *task,
+                                        const ritz_simulation_request *request,
+                                        ritz_simulation *out);
 
 /* A run that is not that of one linear model. */
 typedef struct simulation_kind {
     const char *option; /* that asks for it, "--switched" */
     bool (*asked)(const simulation_options *given);
-    /** @param[in] request  its integrator, times, inputs and initial values */
-    ritz_status (*simulate)(simulation_task *task,
-                            const ritz_simulation_request *request,
-                            ritz_simulation *out);
+    simulation_function *simulate;
 } simulation_kind;
 
 /** All of them, ended by an empty one. */
 extern const simulation_kind simulation_kinds[];
 
+/**
+ * Carry out a run, keep what is done in the checkpoint, if there is one, from
+ * time to time, and continue from a checkpoint that is there.
+ *
+ * @return RITZ_ERR_CONVERGENCE after a signal: what was done is then the output,
+ *         as OUTPUT.interrupted; RITZ_ERR_ARGUMENT if the checkpoint is of
+ *         another command or of other files
+ */
+ritz_status simulation_long_run(simulation_task *task,
+                                ritz_simulation_request *request,
+                                simulation_function *simulate,
+                                ritz_simulation *out);
+
 /** Say what each integrator costs at the step that it needs. */
-ritz_status simulation_say_costs(simulation_task *task,
-                                 const double band_hz[2]);
+ritz_status simulation_say_costs(simulation_task *d, const double band_hz[2]);
 
 /** The cost of a model, in the line of --record. */
 ritz_status simulation_record_cost(cli_run *run, ritz_model subject,

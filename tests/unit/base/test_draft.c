@@ -335,6 +335,9 @@ static void inputs_are_not_replaced(void **state)
     assert_ok(ritz_draft_protect(path));
     assert_ok(ritz_draft_protect("/dev/null"));
     assert_fails(ritz_draft_new(path, &draft), RITZ_ERR_ARGUMENT, sentence);
+    ritz_draft_unprotect(path);
+    assert_ok(ritz_draft_check(path));
+    assert_ok(ritz_draft_protect(path));
     assert_int_equal(link(path, other), 0);
     assert_fails(ritz_draft_new(other, &draft), RITZ_ERR_ARGUMENT, sentence);
     remove(other);

@@ -275,8 +275,8 @@ static void same_nested(const ritz_nested *a, const ritz_nested *b)
     }
 }
 
-static void same_loads(int64_t count, const ritz_reduced_load *a, int64_t count_b,
-                       const ritz_reduced_load *b)
+static void same_loads(int64_t count, const ritz_reduced_load *a,
+                       int64_t count_b, const ritz_reduced_load *b)
 {
     assert_int_equal(count, count_b);
     for (int64_t k = 0; k < count; k++) {
@@ -436,6 +436,8 @@ static void a_simulation_comes_back(void **)
     assert_same(a.dissipated, b.dissipated, a.count, 8);
     assert_same(a.work, b.work, a.count, 8);
     assert_same(a.balance, b.balance, a.count, 8);
+    assert_int_equal(a.num_state, b.num_state);
+    assert_same(a.state, b.state, a.num_state, 8);
     assert_int_equal(a.num_diagnostics, b.num_diagnostics);
     assert_same(a.diagnostic, b.diagnostic, a.num_diagnostics, RITZ_NAME_SIZE);
     assert_same(a.diagnosis, b.diagnosis, a.count * a.num_diagnostics, 8);
@@ -604,7 +606,10 @@ static void every_container_says_how_it_was_made(void **)
     char first[] = "00ff  model.bdf";
     char second[] = "11ee  a longer name.op4";
     char *input[] = {first, second};
-    const ritz_stamp full = {"ritz-verb --option this", 2, input, "half", NULL};
+    const ritz_stamp full = {.command = "ritz-verb --option this",
+                             .num_inputs = 2,
+                             .input = input,
+                             .interrupted = "half"};
 
     for (int k = 0; k < SAMPLE_KINDS; k++) {
         ritz_summary summary = {0};
@@ -641,7 +646,8 @@ static void a_command_of_any_length_comes_back(void **)
     static char command[LONG + 1];
     static char text[MANY][110];
     static char *input[MANY];
-    const ritz_stamp full = {command, MANY, input, NULL, NULL};
+    const ritz_stamp full = {
+        .command = command, .num_inputs = MANY, .input = input};
     const size_t lengths[] = {16382, 16383, 16384, LONG};
     ritz_summary summary = {0};
 

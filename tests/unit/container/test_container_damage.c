@@ -470,7 +470,8 @@ static void no_allocation_failure_leaks(void **)
 {
     char input[] = "00  name";
     char *inputs[] = {input};
-    const ritz_stamp full = {"ritz-verb", 1, inputs, NULL, NULL};
+    const ritz_stamp full = {
+        .command = "ritz-verb", .num_inputs = 1, .input = inputs};
 
     for (int k = 0; k < SAMPLE_KINDS; k++) {
         ritz_summary summary = {0};

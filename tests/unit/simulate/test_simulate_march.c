@@ -153,6 +153,150 @@ static void a_march_may_have_its_own_outputs_and_diagnostics(void **state)
     }
 }
 
+/* Whether a number of steps have been taken. */
+static bool count_down(void *context)
+{
+    int *left = context;
+
+    return (*left)-- == 0;
+}
+
+static void same_values(const double *a, const double *b, int64_t count)
+{
+    if (count > 0)
+        assert_memory_equal(a, b, (size_t)count * sizeof *a);
+}
+
+static void same_runs(const ritz_simulation *a, const ritz_simulation *b)
+{
+    assert_int_equal(a->count, b->count);
+    assert_int_equal(b->num_state, 0);
+    same_values(a->seconds, b->seconds, a->count);
+    same_values(a->u, b->u, a->count * a->num_inputs);
+    same_values(a->y, b->y, a->count * a->num_outputs);
+    same_values(a->q, b->q, a->count * a->num_coordinates);
+    same_values(a->v, b->v, a->count * a->num_coordinates);
+    same_values(a->a, b->a, a->count * a->num_coordinates);
+    assert_int_equal(a->balance != NULL, b->balance != NULL);
+    if (a->balance) {
+        same_values(a->kinetic, b->kinetic, a->count);
+        same_values(a->dissipated, b->dissipated, a->count);
+        same_values(a->balance, b->balance, a->count);
+    }
+}
+
+/* Ended after 7, 8 and 93 steps of 100, where every fourth is stored. */
+static void end_and_continue(ritz_model subject,
+                             ritz_simulation_request request)
+{
+    static const int ends[] = {7, 8, 93};
+    RITZ_OWN(ritz_simulation) whole = {0}, rest = {0};
+    ritz_simulation parts[3] = {0};
+
+    request.every = 4;
+    assert_ok(ritz_simulate(subject, &request, &whole));
+    assert_int_equal(whole.num_state, 0);
+    request.stop = count_down;
+    for (int k = 0; k < 3; k++) {
+        int left = ends[k] - (k > 0 ? ends[k - 1] : 0);
+
+        request.context = &left;
+        assert_ok(ritz_simulate(subject, &request, &parts[k]));
+        assert_int_equal(parts[k].count, ends[k] / 4 + 1);
+        assert_true(parts[k].state[0] == ends[k]);
+        request.from = &parts[k];
+    }
+    request.stop = NULL;
+    assert_ok(ritz_simulate(subject, &request, &rest));
+    same_runs(&whole, &rest);
+    for (int k = 0; k < 3; k++)
+        ritz_simulation_free(&parts[k]);
+}
+
+static void a_run_that_ended_early_is_continued_bit_for_bit(void **state)
+{
+    RITZ_OWN(motions) m = {0};
+
+    (void)state;
+    assert_ok(motions_new(true, &m));
+    for (const ritz_integrator *const *i = ritz_integrators; *i; i++) {
+        ritz_simulation_request request = asking(*i);
+
+        end_and_continue(m.dense, request);
+        request.coordinates = true;
+        end_and_continue(m.dense, request);
+        request.coordinates = false;
+        if ((*i)->takes_sparse)
+            end_and_continue(m.sparse, request);
+    }
+}
+
+static void another_run_is_not_continued(void **state)
+{
+    static const char sentence[] = "that is to be continued has another model";
+    ritz_simulation_request request = asking(&ritz_integrator_trapezoidal);
+    RITZ_OWN(motions) m = {0};
+    RITZ_OWN(ritz_simulation) part = {0}, none = {0};
+    int left = 5;
+
+    (void)state;
+    assert_ok(motions_new(true, &m));
+    request.stop = count_down;
+    request.context = &left;
+    assert_ok(ritz_simulate(m.dense, &request, &part));
+    request.stop = NULL;
+    request.from = &part;
+    request.step = 0.02;
+    assert_fails(ritz_simulate(m.dense, &request, &none), RITZ_ERR_ARGUMENT,
+                 sentence);
+    request.step = 0.01;
+    request.every = 2;
+    assert_fails(ritz_simulate(m.dense, &request, &none), RITZ_ERR_ARGUMENT,
+                 sentence);
+    request.every = 1;
+    request.coordinates = true;
+    assert_fails(ritz_simulate(m.dense, &request, &none), RITZ_ERR_ARGUMENT,
+                 sentence);
+    request.coordinates = false;
+    request.seconds = 0.03;
+    assert_fails(ritz_simulate(m.dense, &request, &none), RITZ_ERR_ARGUMENT,
+                 sentence);
+    request.seconds = 1.0;
+    request.integrator = &ritz_integrator_modal;
+    assert_fails(ritz_simulate(m.dense, &request, &none), RITZ_ERR_ARGUMENT,
+                 sentence);
+}
+
+static void a_search_for_the_step_keeps_nothing(void **state)
+{
+    ritz_simulation_request request = asking(&ritz_integrator_trapezoidal);
+    RITZ_OWN(motions) m = {0};
+    RITZ_OWN(ritz_simulation) none = {0};
+    int left = 5;
+
+    (void)state;
+    assert_ok(motions_new(true, &m));
+    request.stop = count_down;
+    request.context = &left;
+    assert_fails(ritz_simulate_accurate(m.dense, &request, 1e-6, NULL, &none),
+                 RITZ_ERR_CONVERGENCE, "while the step was chosen");
+}
+
+static ritz_status end_early(const motions *m)
+{
+    ritz_simulation_request request = asking(&ritz_integrator_trapezoidal);
+    RITZ_OWN(ritz_simulation) part = {0}, rest = {0};
+    int left = 50;
+
+    request.coordinates = true;
+    request.stop = count_down;
+    request.context = &left;
+    RITZ_CHECK(ritz_simulate(m->dense, &request, &part));
+    request.stop = NULL;
+    request.from = &part;
+    return ritz_simulate(m->dense, &request, &rest);
+}
+
 static ritz_status try_point(const motions *m)
 {
     RITZ_OWN(ritz_simulation) s = {0};
@@ -167,11 +311,15 @@ static void a_march_survives_every_allocation(void **state)
     (void)state;
     assert_ok(motions_new(true, &m));
     assert_survives_every_allocation(try_point(&m));
+    assert_survives_every_allocation(end_early(&m));
 }
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_march_continues_from_its_numbers_bit_for_bit),
     cmocka_unit_test(a_march_may_have_its_own_outputs_and_diagnostics),
+    cmocka_unit_test(a_run_that_ended_early_is_continued_bit_for_bit),
+    cmocka_unit_test(another_run_is_not_continued),
+    cmocka_unit_test(a_search_for_the_step_keeps_nothing),
     cmocka_unit_test(a_march_survives_every_allocation),
 };
 

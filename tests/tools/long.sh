@@ -1,0 +1,79 @@
+#!/bin/sh
+# Runs that end early and are continued. Usage: long.sh FOLDER-OF-THE-TOOLS
+. "$(dirname "$0")/tap.sh"
+. "$here/models.sh"
+# shellcheck disable=SC2086 # $run is words
+
+import_body stator -q --port bearing=1 --port scan=5 --input torque=1:6 \
+    --output-at gyro=5:6 -o stator.h5
+ritz-basis -q macneal-rubin --modes 4 stator.h5 -o basis.h5
+ritz-reduce -q stator.h5 basis.h5 -o reduced.h5
+
+# long NAME OPTIONS: a run of about a second, into NAME.h5, as the words of $run
+long() {
+    run="ritz-simulate reduced.h5 --seconds 2500 --step 0.002 --every 50000 \
+        --input torque=sine:0.7 --coordinates $2 -o $1.h5"
+}
+
+# same NAME: the file holds what the run that was not ended wrote. The command
+# is one of the file's attributes, hence tables are compared, with 16 digits,
+# and the sums of coordinates.
+same() {
+    ritz-export -q --to tsv whole.h5 -o whole.tsv
+    ritz-export -q --to tsv "$2" -o "$2.tsv"
+    works "$1" cmp whole.tsv "$2.tsv"
+}
+
+long whole ''
+expect 0 'time response' $run
+
+# --- a signal -----------------------------------------------------------------
+
+for signal in INT TERM; do
+    echo before >kept.h5
+    rm -f kept.h5.interrupted
+    long kept ''
+    expect 1 "s, is in 'kept.h5.interrupted'" at_step "$signal" simulation $run
+    works '  the output is as it was' grep -qx before kept.h5
+    expect 0 'interrupted    the run, after' ritz-info kept.h5.interrupted
+    expect 0 'times, 1 outputs' ritz-export --to tsv kept.h5.interrupted \
+        -o kept.tsv
+    works '  its times are those of the whole run' test "$(sed 1d kept.tsv |
+        wc -l)" -lt "$(ritz-export -q --to tsv whole.h5 -o whole.tsv &&
+        sed 1d whole.tsv | wc -l)"
+done
+
+# --- a checkpoint -------------------------------------------------------------
+
+rm -f run.h5
+long run '--checkpoint run.ck'
+expect 1 "the same command continues it from 'run.ck'" at_step INT simulation $run
+expect 1 "is in 'run.h5.interrupted'" at_step INT simulation $run
+works '  two signals, and both files are there' \
+    test -s run.ck -a -s run.h5.interrupted -a ! -e run.h5
+expect 0 'time response' $run
+same '  the third run ends as one that was not ended' run.h5
+works '  and its checkpoint is gone' test ! -e run.ck
+
+# --- what is no checkpoint of the run -----------------------------------------
+
+expect 1 "the same command continues it" at_step INT simulation $run
+long run "--checkpoint run.ck --rho 0.5"
+expect 1 "'run.ck' is a checkpoint of 'ritz-simulate reduced.h5" $run
+ritz-reduce -q stator.h5 basis.h5 --band-hz 0,5 -o reduced.h5
+long run '--checkpoint run.ck'
+expect 1 'is a checkpoint of files that have changed since' $run
+long run '--checkpoint whole.h5'
+expect 1 "'whole.h5' is no checkpoint" $run
+long run '--checkpoint reduced.h5'
+expect 1 "'reduced.h5' is the model" $run
+long run '--checkpoint run.h5'
+expect 1 "'run.h5' is the output too" $run
+echo nothing >empty.ck
+long run '--checkpoint empty.ck'
+expect 1 'empty.ck' $run
+works '  and stays' grep -qx nothing empty.ck
+expect 2 '--checkpoint needs --step' ritz-simulate reduced.h5 --seconds 1 \
+    --input torque=step --checkpoint run.ck -o run.h5
+
+echo "1..$count"

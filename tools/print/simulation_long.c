@@ -1,0 +1,160 @@
+/*
+ * Long runs: a run is ended early, at a signal or to keep a checkpoint, and
+ * what it has done is a time response with a state, from which the same command
+ * continues it.
+ */
+#include "print/simulation.h"
+
+#include "base/draft.h"
+
+#include <string.h>
+#include <unistd.h>
+
+/* When a run ends early. */
+typedef struct run_watch {
+    bool keeps;   /* checkpoints */
+    double began; /* by cli_clock: when the run was started or continued */
+    double next;  /* when it is to end; 0: it has not begun its steps */
+} run_watch;
+
+/* Seconds of work between two checkpoints. */
+static const double between = 30.0;
+/* Work takes so many times as long as keeping it and starting again. */
+static const double share = 20.0;
+
+/* Whether to end the run here. Its first call tells what a start costs. */
+static bool is_due(void *context)
+{
+    run_watch *w = context;
+    double now = 0.0;
+
+    if (cli_interrupted())
+        return true;
+    if (!w->keeps)
+        return false;
+    now = cli_clock();
+    if (w->next == 0.0)
+        w->next = now + fmax(between, share * (now - w->began));
+    return now >= w->next;
+}
+
+/* The command and the files of a checkpoint are those of this run. */
+static ritz_status check_command(const cli_run *run, const char *path)
+{
+    RITZ_OWN(ritz_summary) summary = {0};
+    bool same = true;
+
+    RITZ_CHECK(ritz_container_summary(path, &summary));
+    RITZ_REFUSE_IF(strcmp(summary.kind, "simulation") != 0 ||
+                       !*summary.interrupted,
+                   RITZ_ERR_ARGUMENT, "'%s' is no checkpoint", path);
+    RITZ_REFUSE_IF(strcmp(summary.command, run->command) != 0,
+                   RITZ_ERR_ARGUMENT, "'%s' is a checkpoint of '%s'", path,
+                   summary.command);
+    same = summary.num_inputs == run->num_inputs;
+    for (int64_t k = 0; same && k < run->num_inputs; k++)
+        same = strcmp(summary.input[k], run->input[k]) == 0;
+    RITZ_REFUSE_IF(!same, RITZ_ERR_ARGUMENT,
+                   "'%s' is a checkpoint of files that have changed since",
+                   path);
+    return RITZ_OK;
+}
+
+static ritz_status read_checkpoint(const cli_run *run, const char *path,
+                                   ritz_simulation *out)
+{
+    ritz_status status = RITZ_OK;
+
+    for (int k = 0; k < run->num_operands; k++)
+        RITZ_REFUSE_IF(ritz_draft_same(path, run->operand[k]),
+                       RITZ_ERR_ARGUMENT, "'%s' is the model", path);
+    RITZ_REFUSE_IF(ritz_draft_same(path, run->output), RITZ_ERR_ARGUMENT,
+                   "'%s' is the output too", path);
+    if (access(path, F_OK) != 0)
+        return cli_can_write(path);
+    RITZ_CHECK(ritz_container_keep(path));
+    status = check_command(run, path);
+    if (status == RITZ_OK)
+        status = ritz_container_read_simulation(path, out);
+    ritz_container_release();
+    ritz_draft_unprotect(path); /* the next checkpoint replaces it */
+    return status;
+}
+
+/* "the run, after 3.2 of 10 s" */
+static void describe_end(const ritz_simulation_request *request,
+                         const ritz_simulation *s, char out[RITZ_NAME_SIZE])
+{
+    snprintf(out, RITZ_NAME_SIZE, "the run, after %.6g of %.6g s",
+             s->state[0] * request->step, request->seconds);
+}
+
+static ritz_status write_checkpoint(cli_run *run, const char *path,
+                                    const ritz_simulation_request *request,
+                                    const ritz_simulation *s)
+{
+    char what[RITZ_NAME_SIZE];
+    ritz_stamp stamp = *cli_stamp(run);
+
+    describe_end(request, s, what);
+    stamp.interrupted = what;
+    stamp.now = true;
+    return ritz_context(ritz_container_write_simulation(path, s, &stamp), path);
+}
+
+/* After a signal: what was done becomes OUTPUT.interrupted. */
+static ritz_status keep_rest(cli_run *run, const char *checkpoint,
+                             const ritz_simulation_request *request,
+                             const ritz_simulation *s)
+{
+    char what[RITZ_NAME_SIZE];
+
+    describe_end(request, s, what);
+    RITZ_CHECK(cli_divert(run, what));
+    RITZ_CHECK(ritz_container_write_simulation(run->output, s, cli_stamp(run)));
+    return ritz_fail(RITZ_ERR_CONVERGENCE, "interrupted: %s, is in '%s'%s%s%s",
+                     what, run->output,
+                     checkpoint ? "; the same command continues it from '" : "",
+                     checkpoint ? checkpoint : "", checkpoint ? "'" : "");
+}
+
+ritz_status simulation_long_run(simulation_task *task,
+                                ritz_simulation_request *request,
+                                simulation_function *simulate,
+                                ritz_simulation *out)
+{
+    cli_run *run = task->run;
+    const char *checkpoint = task->given->checkpoint;
+    RITZ_OWN(ritz_simulation) part = {0};
+
+    if (checkpoint)
+        RITZ_CHECK_IN("--checkpoint", read_checkpoint(run, checkpoint, &part));
+    cli_interruptible();
+    while (true) {
+        run_watch watch = {.keeps = checkpoint, .began = cli_clock()};
+        RITZ_OWN(ritz_simulation) s = {0};
+
+        request->stop = is_due;
+        request->context = &watch;
+        request->from = part.num_state > 0 ? &part : NULL;
+        RITZ_CHECK(simulate(task, request, &s));
+        ritz_simulation_free(&part);
+        RITZ_MOVE(part, s);
+        if (part.num_state == 0)
+            break;
+        if (checkpoint)
+            RITZ_CHECK_IN("--checkpoint",
+                          write_checkpoint(run, checkpoint, request, &part));
+        if (cli_interrupted())
+            return keep_rest(run, checkpoint, request, &part);
+    }
+    (void)cli_uninterruptible();
+    RITZ_MOVE(*out, part);
+    return RITZ_OK;
+}
+
+void simulation_remove_checkpoint(const simulation_options *given)
+{
+    if (given->checkpoint)
+        unlink(given->checkpoint);
+}
