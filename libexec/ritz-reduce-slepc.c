@@ -23,22 +23,13 @@ static const char *file;
 /* Read a component without its matrices; of these each rank reads its part. */
 static ritz_status read_frame(cli_run *run, const char *path, model *out)
 {
-    ritz_summary summary = {0};
     ritz_status status = RITZ_OK;
 
     RITZ_CHECK(cli_input(run, path));
     RITZ_CHECK(ritz_container_keep(path));
     status = ritz_slab_frame(path, &out->component);
-    if (status == RITZ_OK)
-        status = ritz_container_summary(path, &summary);
     ritz_container_release();
     RITZ_CHECK(status);
-    if (summary.num_loads > 0)
-        cli_warn(run,
-                 "'%s': geometric stiffness of %ld loads is left out by "
-                 "--engine slepc",
-                 path, summary.num_loads);
-    ritz_summary_free(&summary);
     out->kind = MODEL_COMPONENT;
     file = path;
     return RITZ_OK;

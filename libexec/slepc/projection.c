@@ -20,6 +20,7 @@
 
 #include <inttypes.h>
 #include <limits.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -52,6 +53,9 @@ typedef struct share {
     int64_t from, to; /* the rank's own dofs */
     ritz_slab slab[MATRICES];
     bool symmetric[MATRICES];
+    int64_t num_loads;
+    char (*load)[RITZ_NAME_SIZE]; /* of which there is geometric stiffness */
+    ritz_slab *KG;                /* num_loads */
     ritz_dofs rows;      /* dofs of the part, ascending; at least one */
     int64_t *place;      /* of each dof among `rows` */
     ritz_component part; /* matrices with these rows; grids and elements are
@@ -63,6 +67,8 @@ static void share_free(share *s)
 {
     for (int k = 0; k < MATRICES; k++)
         ritz_slab_free(&s->slab[k]);
+    RITZ_FREE_EACH(ritz_slab, s->num_loads, s->KG);
+    free(s->load);
     ritz_dofs_free(&s->rows);
     ritz_dense_free(&s->T);
     RITZ_FREE(s->place);
@@ -116,6 +122,19 @@ static bool is_symmetric(const ritz_slab *slab)
 
 /* --- reading -------------------------------------------------------------- */
 
+/* @param[in] must  refuse a matrix that is not symmetric */
+static ritz_status read_slab(share *s, const char *name, bool must,
+                             ritz_slab *slab, bool *symmetric)
+{
+    RITZ_CHECK(rows_read_matrix(&s->frame, name, slab));
+    *symmetric = is_symmetric(slab);
+    RITZ_REFUSE_IF(must && !*symmetric, RITZ_ERR_FORMAT,
+                   "%s is not symmetric to the last bit: ritz-import would "
+                   "average both triangles",
+                   name);
+    return RITZ_OK;
+}
+
 static ritz_status read_matrix(share *s, int k)
 {
     const char *name = matrices[k].name;
@@ -128,16 +147,48 @@ static ritz_status read_matrix(share *s, int k)
     ranks_share(&has, sizeof has);
     if (!has && (k == DAMPING || k == HYSTERESIS))
         return RITZ_OK;
-    RITZ_CHECK(rows_read_matrix(&s->frame, name, &s->slab[k]));
-    s->symmetric[k] = is_symmetric(&s->slab[k]);
-    RITZ_REFUSE_IF(matrices[k].symmetric && !s->symmetric[k], RITZ_ERR_FORMAT,
-                   "%s is not symmetric to the last bit: ritz-import would "
-                   "average both triangles",
-                   name);
+    return read_slab(s, name, matrices[k].symmetric, &s->slab[k],
+                     &s->symmetric[k]);
+}
+
+/* Tell all ranks which loads have geometric stiffness. */
+static ritz_status share_loads(share *s)
+{
+    ritz_status status = RITZ_OK;
+
+    if (ranks_own() == 0)
+        status = ritz_slab_loads(s->frame.path, &s->num_loads, &s->load);
+    RANKS_CHECK(status);
+    ranks_share(&s->num_loads, sizeof s->num_loads);
+    if (ranks_own() > 0)
+        s->load = ranks_take(s->num_loads, sizeof *s->load);
+    ranks_share(s->load, s->num_loads * (int64_t)sizeof *s->load);
+    RANKS_CHECK_NEW(s->KG, s->num_loads);
+    return RITZ_OK;
+}
+
+static ritz_status read_loads(share *s)
+{
+    enum { SIZE = RITZ_NAME_SIZE + 8 };
+
+    RITZ_CHECK(share_loads(s));
+    for (int64_t k = 0; k < s->num_loads; k++) {
+        char name[SIZE];
+        bool symmetric = false;
+
+        snprintf(name, sizeof name, "KG/%s", s->load[k]);
+        RITZ_CHECK(read_slab(s, name, true, &s->KG[k], &symmetric));
+    }
     return RITZ_OK;
 }
 
 /* --- the part ------------------------------------------------------------- */
+
+static void mark_entries(const ritz_sparse *A, bool *mark)
+{
+    for (int64_t p = 0; A->colptr && p < A->colptr[A->ncol]; p++)
+        mark[A->rowind[p]] = true;
+}
 
 /* Mark the rank's own dofs, and those in which its columns have entries. */
 static void mark_touched(const share *s, bool *mark)
@@ -145,12 +196,10 @@ static void mark_touched(const share *s, bool *mark)
     mark[0] = true;
     for (int64_t j = s->from; j < s->to; j++)
         mark[j] = true;
-    for (int k = 0; k < MATRICES; k++) {
-        const ritz_sparse *A = &s->slab[k].A;
-
-        for (int64_t p = 0; A->colptr && p < A->colptr[A->ncol]; p++)
-            mark[A->rowind[p]] = true;
-    }
+    for (int k = 0; k < MATRICES; k++)
+        mark_entries(&s->slab[k].A, mark);
+    for (int64_t k = 0; k < s->num_loads; k++)
+        mark_entries(&s->KG[k].A, mark);
 }
 
 /* If a dof of a grid is marked, mark all its dofs: the mass between two grids
@@ -202,9 +251,9 @@ static ritz_status choose_rows(share *s)
 
 /* The slab as a square matrix with the rows and columns of the part; the slab
    is freed. */
-static ritz_status cut_slab(share *s, int k, ritz_sparse *out)
+static ritz_status cut_slab(const share *s, ritz_slab *slab, bool by_rows,
+                            ritz_sparse *out)
 {
-    ritz_slab *slab = &s->slab[k];
     const int64_t h = s->rows.count;
     RITZ_OWN(ritz_sparse) A = {0};
 
@@ -219,9 +268,22 @@ static ritz_status cut_slab(share *s, int k, ritz_sparse *out)
     for (int64_t j = 0; j < h; j++)
         A.colptr[j + 1] += A.colptr[j];
     ritz_slab_free(slab);
-    if (matrices[k].by_rows)
+    if (by_rows)
         return ritz_sparse_transpose(&A, out);
     RITZ_MOVE(*out, A);
+    return RITZ_OK;
+}
+
+static ritz_status cut_loads(share *s)
+{
+    RITZ_CHECK_NEW(s->part.load, s->num_loads);
+    for (; s->part.num_loads < s->num_loads; s->part.num_loads++) {
+        const int64_t k = s->part.num_loads;
+        ritz_load *to = &s->part.load[k];
+
+        RITZ_CHECK(ritz_name_copy(s->load[k], to->name));
+        RITZ_CHECK(cut_slab(s, &s->KG[k], false, &to->KG));
+    }
     return RITZ_OK;
 }
 
@@ -237,8 +299,9 @@ static ritz_status make_part(share *s)
     for (int k = 0; k < MATRICES; k++)
         if (s->slab[k].A.colptr)
             RITZ_CHECK(cut_slab(
-                s, k, (ritz_sparse *)((char *)&s->part + matrices[k].at)));
-    return RITZ_OK;
+                s, &s->slab[k], matrices[k].by_rows,
+                (ritz_sparse *)((char *)&s->part + matrices[k].at)));
+    return cut_loads(s);
 }
 
 /* --- rows of T ------------------------------------------------------------ */
@@ -344,6 +407,10 @@ static void add_congruences(const share *s, ritz_congruences *sums)
     for (int k = 0; k < MATRICES; k++)
         if (symmetric[k]->val && s->symmetric[k])
             ritz_dense_symmetrise(symmetric[k]);
+    for (int64_t k = 0; k < sums->num_loads; k++) {
+        add_matrix(&sums->load[k].KG);
+        ritz_dense_symmetrise(&sums->load[k].KG);
+    }
 }
 
 /* Carry out a task. Collective. @param[in] T  NULL but in rank 0 */
@@ -365,6 +432,7 @@ static ritz_status work_together(const projection_task *t, const char *path,
     ritz_monitor_step("matrices", 0, 0);
     for (int k = 0; k < MATRICES; k++)
         RITZ_CHECK(read_matrix(&s, k));
+    RITZ_CHECK(read_loads(&s));
     RANKS_CHECK(make_part(&s));
     RITZ_CHECK(distribute_basis(&s, T));
     RITZ_CHECK(choose_digits(&s, &twofold));

@@ -61,6 +61,27 @@ ritz_status ritz_slab_has(const char *path, const char *name, bool *out)
     return ritz_context(ritz_h5_seen(), path);
 }
 
+static ritz_status list_loads(hid_t file, int64_t *count,
+                              char (**name)[RITZ_NAME_SIZE])
+{
+    RITZ_OWN(hid_t) group = 0;
+
+    if (!ritz_h5_has(file, "KG"))
+        return ritz_h5_seen();
+    RITZ_CHECK(ritz_h5_enter(file, "KG", &group));
+    return ritz_context(ritz_h5_list(group, count, name), "KG");
+}
+
+ritz_status ritz_slab_loads(const char *path, int64_t *count,
+                            char (**name)[RITZ_NAME_SIZE])
+{
+    RITZ_OWN(hid_t) file = 0;
+    char kind[RITZ_NAME_SIZE] = "";
+
+    RITZ_CHECK_IN(path, ritz_schema_open(path, kind, &file));
+    return ritz_context(list_loads(file, count, name), path);
+}
+
 /* Read values [first, first + count) of a data set of one dimension. */
 static ritz_status read_part(hid_t group, const char *name, hid_t type,
                              int64_t first, int64_t count, void *values)

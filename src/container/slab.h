@@ -27,6 +27,11 @@ typedef struct ritz_slab {
 /** Whether the container has a group of that name. */
 ritz_status ritz_slab_has(const char *path, const char *name, bool *out);
 
+/** Names of the loads whose geometric stiffness "KG/<name>" is stored, in their
+ * order. @param[out] name  to be freed; NULL if there is none */
+ritz_status ritz_slab_loads(const char *path, int64_t *count,
+                            char (**name)[RITZ_NAME_SIZE]);
+
 /**
  * Read columns [from, to) of a square matrix of @p n rows. Its checksums, which
  * are those of all columns, are not compared: see ritz_slab_verify.

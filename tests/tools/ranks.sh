@@ -28,11 +28,13 @@ import_membrane() {
 }
 
 # import_damped: damped.h5, the membrane with a damping matrix that is not
-# symmetric, structural damping, dampers, an input and an output.
+# symmetric, structural damping, geometric stiffness of two loads, dampers, an
+# input and an output.
 import_damped() {
     works 'damping matrices are made' check damping m.dofs $side
     expect 0 '' ritz-import -q --stiffness m.K.mtx --mass m.M.mtx \
         --dofs m.dofs --damping m.D.mtx --structural-damping m.K4.mtx \
+        --geometric-stiffness m.M.mtx@spin --geometric-stiffness m.K.mtx@all \
         --port corner=1:3 --port "rim=$rim:3" --input push=30:3 \
         --output see=40:3 --damper 'soft=100:3,142:3*2' \
         --damper 'same=100:3,142:3*1' -o damped.h5

@@ -70,8 +70,8 @@ fixed='-q craig-bampton --attach rim m.h5'
 }
 expect 0 '' ritz-reduce -q m.h5 4.h5 -o reduced.h5
 
-# Reduction in ranks: of the membrane with a damping matrix that is not symmetric
-# and with structural damping, of a rotor with grids, and therefore inertia
+# Reduction in ranks: of the membrane with a damping matrix that is not symmetric,
+# with structural damping and geometric stiffness, of a rotor with grids, and therefore inertia
 # invariants, and a damper, and of one grid whose dofs are in several ranks.
 alone='-q --estimates none'
 together="$alone --engine slepc"
@@ -86,6 +86,8 @@ for case in damped:1 damped:4 rotor:2 platform:4; do
     expect 0 '' ritz-reduce $alone $model.h5 $model.b.h5 -o 0.h5
     expect 0 '' reduce $n $together $model.h5 $model.b.h5 -o $n.h5
     works "$model is reduced alike in $n" check alike 0.h5 $n.h5
+    [ $model != damped ] ||
+        expect 0 'KG/spin' ritz-info $n.h5
 done
 
 # static vectors: of the dampers, one of which depends on the other; of other
