@@ -5,7 +5,11 @@
 int main(int argc, char **argv)
 {
     model_options given = {0};
+    cli_list loads = {0};
     const cli_option options[] = {
+        CLI_LIST("load", &loads, "NAME=X",
+                 "check that the model is far enough from buckling under X "
+                 "times a load of which it has geometric stiffness"),
         AT_OPTION(&given.at),
         ORDER_OPTION(&given.order),
         {0},
@@ -18,8 +22,9 @@ int main(int argc, char **argv)
                       false}},
         .summary = "Audit a component before it is reduced: symmetry, "
                    "definiteness, rigid-body modes,\ngrounding, mass "
-                   "properties, massless and unconnected dofs, digits, ports. "
-                   "Probe a small model\nfor stability: definiteness, poles, "
+                   "properties, massless and unconnected dofs, digits, ports, "
+                   "buckling factors of\nloads. Probe a small model for "
+                   "stability: definiteness, poles, "
                    "energy growth, passivity, its interface locked\nand on "
                    "springs. Status 1 if one check fails; warnings do not "
                    "fail.",
@@ -31,5 +36,5 @@ int main(int argc, char **argv)
     cli_run run;
 
     cli_parse(&program, options, argc, argv, &run);
-    return cli_finish(&run, checks_run(&run, &given));
+    return cli_finish(&run, checks_run(&run, &given, &loads));
 }

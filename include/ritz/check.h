@@ -37,6 +37,54 @@ typedef struct ritz_audit {
 ritz_status ritz_audit_component(const ritz_component *component,
                                  ritz_audit *out);
 
+/* A load that acts, in units of the load that its KG is of. */
+typedef struct ritz_applied {
+    char name[RITZ_NAME_SIZE];
+    double amount;
+} ritz_applied;
+
+/**
+ * As ritz_audit_component, and whether the model is far enough from buckling
+ * under the sum of these loads.
+ *
+ * @return RITZ_ERR_ARGUMENT if the model has no load of a name
+ */
+ritz_status ritz_audit_component_under(const ritz_component *component,
+                                       int64_t count,
+                                       const ritz_applied *applied,
+                                       ritz_audit *out);
+ritz_status ritz_audit_reduced_under(const ritz_reduced *reduced, int64_t count,
+                                     const ritz_applied *applied,
+                                     ritz_audit *out);
+
+/*
+ * By what a load must be multiplied for the model to buckle,
+ *
+ *     K phi = -mu KG phi,
+ *
+ * where KG of tension is positive: a load that compresses has a positive
+ * factor, one that pulls a negative one, and many loads have both.
+ */
+typedef struct ritz_buckling {
+    double factor;   /* lowest positive mu */
+    double reversed; /* negative mu nearest to 0. NaN, either: there is none up
+                        to 1000 times the other one */
+} ritz_buckling;
+
+/**
+ * Buckling factors of each load of a model.
+ *
+ * @param[out] out  as many as the model has loads, to be freed; NULL if there is
+ *                  none, or if K leaves a motion free, which has no factors
+ * @return RITZ_ERR_CONVERGENCE
+ * @cost   of a component above 600 dofs a factor, some twenty solves and counts
+ *         of negative eigenvalues for each load; else O(n^3)
+ */
+ritz_status ritz_buckling_of_component(const ritz_component *component,
+                                       ritz_buckling **out);
+ritz_status ritz_buckling_of_reduced(const ritz_reduced *reduced,
+                                     ritz_buckling **out);
+
 /** "pass", "warn", "fail". */
 const char *ritz_verdict_name(ritz_verdict verdict);
 

@@ -298,9 +298,9 @@ static ritz_status make_part(share *s)
         s->part.dof[i] = s->component->dof[s->rows.at[i]];
     for (int k = 0; k < MATRICES; k++)
         if (s->slab[k].A.colptr)
-            RITZ_CHECK(cut_slab(
-                s, &s->slab[k], matrices[k].by_rows,
-                (ritz_sparse *)((char *)&s->part + matrices[k].at)));
+            RITZ_CHECK(
+                cut_slab(s, &s->slab[k], matrices[k].by_rows,
+                         (ritz_sparse *)((char *)&s->part + matrices[k].at)));
     return cut_loads(s);
 }
 

@@ -288,6 +288,9 @@
 #define RITZ_SHIFT_FARTHER 1e2
 /* Convergence of ARPACK: eigenvalues err by its square. */
 #define RITZ_ARNOLDI_SETTLED 1e-12
+/* Residual of Lanczos iterations for one end of a spectrum, relative to the
+   value there, which errs by its square over the gap to the next one. */
+#define RITZ_EXTREME_SETTLED 1e-9
 /* Rounding of x'K x, relative to lambda, above which pairs are computed again
    with sums of twice the digits. Rounding below this leaves errors of up to
    half of it, with any shift: residuals |lambda K^-1 M x - x| / |x| of 1e-10
@@ -1002,6 +1005,19 @@
 /* A motion of a body takes part in no mode of the system if its participation
    is below this part of the largest. */
 #define RITZ_NO_MOTION 1e-12
+
+/* Buckling */
+
+/* A load does not buckle in a direction if it has no factor there up to this
+   many times that of the other direction: what rounding of KG leaves of the
+   other sign is far beyond it. */
+#define RITZ_BUCKLING_REACH 1e3
+/* A count of factors is made this part below one that was found, or it would be
+   at a singular matrix. */
+#define RITZ_BUCKLING_BELOW 1e-6
+/* A load above this part of its buckling load is reported: deflections are
+   1 / (1 - part) of those without it, twice as large. */
+#define RITZ_BUCKLING_PART 0.5
 
 /* Floating-point operations of a factor below which one thread is used: two
    wait for each other in every block of columns. Measured with CHOLMOD: factors

@@ -22,13 +22,54 @@ static unsigned find_features(const ritz_checker *it)
             has |= RITZ_NEEDS_DAMPING;
         if (c->num_ports > 0)
             has |= RITZ_NEEDS_PORTS;
+        if (c->num_loads > 0)
+            has |= RITZ_NEEDS_LOADS;
     } else if (it->reduced) {
         if (it->model.D.val)
             has |= RITZ_NEEDS_DAMPING;
         if (it->reduced->K4.val)
             has |= RITZ_NEEDS_STRUCTURAL;
+        if (it->reduced->num_loads > 0)
+            has |= RITZ_NEEDS_LOADS;
     }
     return has;
+}
+
+static int64_t count_loads(const ritz_checker *it)
+{
+    return it->component ? it->component->num_loads
+           : it->reduced ? it->reduced->num_loads
+                         : 0;
+}
+
+static const char *load_name(const ritz_checker *it, int64_t k)
+{
+    return it->component ? it->component->load[k].name
+                         : it->reduced->load[k].name;
+}
+
+/* Amounts by load, of those that act. */
+static ritz_status take_applied(ritz_checker *it, int64_t count,
+                                const ritz_applied *applied)
+{
+    const int64_t loads = count_loads(it);
+
+    if (count == 0)
+        return RITZ_OK;
+    RITZ_CHECK_NEW(it->amount, loads);
+    for (int64_t j = 0; j < count; j++) {
+        int64_t k = 0;
+
+        while (k < loads && strcmp(load_name(it, k), applied[j].name) != 0)
+            k++;
+        RITZ_REFUSE_IF(k == loads, RITZ_ERR_ARGUMENT,
+                       "there is no geometric stiffness of a load '%s'",
+                       applied[j].name);
+        RITZ_REFUSE_IF(!isfinite(applied[j].amount), RITZ_ERR_ARGUMENT,
+                       "load '%s' is not finite", applied[j].name);
+        it->amount[k] += applied[j].amount;
+    }
+    return RITZ_OK;
 }
 
 static ritz_status run_checks(ritz_checker *it, unsigned of, ritz_audit *out)
@@ -36,7 +77,8 @@ static ritz_status run_checks(ritz_checker *it, unsigned of, ritz_audit *out)
     unsigned has = find_features(it);
 
     it->usable = true;
-    RITZ_CHECK_NEW(it->audit.check, RITZ_MOST_CHECKS);
+    it->room = RITZ_MOST_CHECKS + RITZ_LINES_OF_LOAD * count_loads(it);
+    RITZ_CHECK_NEW(it->audit.check, it->room);
     for (const ritz_check_row *row = ritz_checks; row->run; row++)
         if (it->usable && (row->of & of) && (row->needs & has) == row->needs)
             RITZ_CHECK(row->run(it));
@@ -48,7 +90,7 @@ static ritz_status run_checks(ritz_checker *it, unsigned of, ritz_audit *out)
 static void ritz_checker_free(ritz_checker *it)
 {
     ritz_audit_free(&it->audit);
-    RITZ_FREE(it->part, it->mu, it->moves);
+    RITZ_FREE(it->part, it->mu, it->moves, it->amount);
     ritz_dense_free(&it->R);
     ritz_dense_free(&it->Phi);
     ritz_structure_free(&it->model);
@@ -61,12 +103,21 @@ static void ritz_checker_free(ritz_checker *it)
 ritz_status ritz_audit_component(const ritz_component *component,
                                  ritz_audit *out)
 {
+    return ritz_audit_component_under(component, 0, NULL, out);
+}
+
+ritz_status ritz_audit_component_under(const ritz_component *component,
+                                       int64_t count,
+                                       const ritz_applied *applied,
+                                       ritz_audit *out)
+{
     RITZ_OWN(ritz_checker) it = {.component = component, .softest = nan("")};
 
     RITZ_REFUSE_IF(component->num_dofs == 0, RITZ_ERR_ARGUMENT,
                    "the component has no dofs");
     it.rigid =
         !component->K.colptr || component->K.colptr[component->K.ncol] == 0;
+    RITZ_CHECK(take_applied(&it, count, applied));
     return run_checks(&it, RITZ_OF_COMPONENT, out);
 }
 
@@ -128,14 +179,22 @@ static ritz_status take_interface(ritz_checker *it)
     return ritz_general_transpose(&Lt, &it->L);
 }
 
-/* Structural damping, of harmonic motion alone, has a check of its own. */
 ritz_status ritz_audit_reduced(const ritz_reduced *reduced, ritz_audit *out)
+{
+    return ritz_audit_reduced_under(reduced, 0, NULL, out);
+}
+
+/* Structural damping, of harmonic motion alone, has a check of its own. */
+ritz_status ritz_audit_reduced_under(const ritz_reduced *reduced, int64_t count,
+                                     const ritz_applied *applied,
+                                     ritz_audit *out)
 {
     RITZ_OWN(ritz_checker) it = {.reduced = reduced, .definite = true};
 
     RITZ_CHECK(ritz_damping_parse(reduced->damping, &it.damping));
     RITZ_CHECK(ritz_structure_of_reduced(reduced, &it.model));
     RITZ_CHECK(take_interface(&it));
+    RITZ_CHECK(take_applied(&it, count, applied));
     return run_checks(&it, RITZ_OF_REDUCED, out);
 }
 

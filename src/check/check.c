@@ -18,7 +18,7 @@ void ritz_checker_say(ritz_checker *it, const char *name, double value,
     ritz_check *check = NULL;
     va_list values;
 
-    if (it->audit.count >= RITZ_MOST_CHECKS)
+    if (it->audit.count >= it->room)
         return;
     check = &it->audit.check[it->audit.count++];
     *check = (ritz_check){.value = value, .limit = limit, .verdict = verdict};

@@ -26,6 +26,7 @@ enum {
     RITZ_NEEDS_DAMPING = 2,   /* D has */
     RITZ_NEEDS_STRUCTURAL = 4,
     RITZ_NEEDS_PORTS = 8,
+    RITZ_NEEDS_LOADS = 16, /* geometric stiffness of a load */
 };
 
 /*
@@ -51,11 +52,13 @@ typedef struct ritz_passivity {
 
 typedef struct ritz_checker {
     ritz_audit audit;
+    int64_t room; /* of the audit */
 
     /* One of these is what is checked. */
     const ritz_component *component;
     const ritz_reduced *reduced;
     const ritz_state_space *space;
+    double *amount; /* of each load that acts; NULL: none does */
 
     /* Filled by checks of a component. */
     double digits;                 /* of K, at most 17 */
@@ -92,8 +95,9 @@ typedef struct ritz_checker {
     bool stable;   /* no pole is right of the axis */
 } ritz_checker;
 
-/* Room for what all checks say: the tables in ritz/check.h have fewer. */
-enum { RITZ_MOST_CHECKS = 32 };
+/* Room for what all checks say, but for the lines of loads: the tables in
+   ritz/check.h have fewer. */
+enum { RITZ_MOST_CHECKS = 32, RITZ_LINES_OF_LOAD = 2 };
 
 /* A row of the list: of which models, with what, the function. */
 typedef struct ritz_check_row {
@@ -164,6 +168,7 @@ ritz_status ritz_check_grounding(ritz_checker *it);
 ritz_status ritz_check_mass(ritz_checker *it);
 ritz_status ritz_check_damping(ritz_checker *it);
 ritz_status ritz_check_ports(ritz_checker *it);
+ritz_status ritz_check_buckling(ritz_checker *it);
 
 /* Those of a reduced component and of a state space. */
 ritz_status ritz_check_reduced_mass(ritz_checker *it);

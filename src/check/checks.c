@@ -29,5 +29,8 @@ const ritz_check_row ritz_checks[] = {
     {BOTH, 0, ritz_check_locked},
     {BOTH, 0, ritz_check_sprung},
     {RITZ_OF_REDUCED, 0, ritz_check_joined},
+
+    {RITZ_OF_COMPONENT | RITZ_OF_REDUCED, RITZ_NEEDS_LOADS,
+     ritz_check_buckling},
     {0, 0, NULL},
 };

@@ -207,6 +207,15 @@ ritz_status model_read(cli_run *run, const char *path, int wanted, model *out)
     return RITZ_OK;
 }
 
+void model_warn_loads(cli_run *run, const char *path, int64_t count)
+{
+    if (count > 0)
+        cli_warn(run,
+                 "'%s': geometric stiffness of %ld load%s is left out: a state "
+                 "space has no stiffness matrix",
+                 path, count, count > 1 ? "s" : "");
+}
+
 ritz_status model_scene(cli_run *run, const char *path, ritz_scene *out)
 {
     RITZ_OWN(ritz_scene) scene = {0};

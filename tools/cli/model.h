@@ -125,6 +125,10 @@ ritz_status model_read(cli_run *run, const char *path, int wanted, model *out);
 /** Hash and read a scene, and hash the models that it names. */
 ritz_status model_scene(cli_run *run, const char *path, ritz_scene *out);
 
+/** Warn that a state space, which has no stiffness matrix, leaves out the
+ * geometric stiffness of @p count loads of a model. */
+void model_warn_loads(cli_run *run, const char *path, int64_t count);
+
 /** Warn of a scene with more than 1000 configurations, which a few lines of
  * text can define: estimate from the first one their time and memory. */
 ritz_status model_foresee(cli_run *run, const ritz_stage *stage);

@@ -458,6 +458,7 @@ static ritz_status reduce_to_states(cli_run *run, const model *full,
     ritz_probe probe = {0};
     char text[2 * RITZ_NAME_SIZE];
 
+    model_warn_loads(run, run->operand[0], full->component.num_loads);
     RITZ_CHECK_IN(what, project_model(full, basis, states));
     RITZ_CHECK_IN(what, ritz_probe_states(states, &probe));
     RITZ_CHECK(ritz_probe_record(&probe, &states->estimates));

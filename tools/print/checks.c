@@ -36,7 +36,44 @@ const ritz_check *checks_first(const ritz_audit *audit)
     return NULL;
 }
 
-ritz_status checks_run(cli_run *run, const model_options *given)
+/* "NAME=X" of --load. */
+static ritz_status parse_load(const char *text, ritz_applied *out)
+{
+    const char *mark = strrchr(text, '=');
+    char *end = NULL;
+
+    RITZ_REFUSE_IF(!mark || mark - text >= RITZ_NAME_SIZE, RITZ_ERR_ARGUMENT,
+                   "--load: '%s' is not of the form NAME=X", text);
+    snprintf(out->name, sizeof out->name, "%.*s", (int)(mark - text), text);
+    out->amount = strtod(mark + 1, &end);
+    RITZ_REFUSE_IF(!*out->name || end == mark + 1 || *end, RITZ_ERR_ARGUMENT,
+                   "--load: '%s' is not of the form NAME=X", text);
+    return RITZ_OK;
+}
+
+static ritz_status audit_model(const model *m, const cli_list *loads,
+                               ritz_audit *out)
+{
+    RITZ_OWN_ARRAY ritz_applied *applied = NULL;
+
+    RITZ_REFUSE_IF(m->kind == MODEL_STATES && loads->count > 0,
+                   RITZ_ERR_ARGUMENT,
+                   "a state space has no geometric stiffness: --load is not "
+                   "for it");
+    if (m->kind == MODEL_STATES)
+        return ritz_audit_states(&m->states, out);
+    RITZ_CHECK_NEW(applied, loads->count);
+    for (int64_t k = 0; k < loads->count; k++)
+        RITZ_CHECK(parse_load(loads->text[k], &applied[k]));
+    return m->kind == MODEL_COMPONENT
+               ? ritz_audit_component_under(&m->component, loads->count,
+                                            applied, out)
+               : ritz_audit_reduced_under(&m->reduced, loads->count, applied,
+                                          out);
+}
+
+ritz_status checks_run(cli_run *run, const model_options *given,
+                       const cli_list *loads)
 {
     const char *path = run->operand[0];
     const ritz_check *first = NULL;
@@ -47,11 +84,7 @@ ritz_status checks_run(cli_run *run, const model_options *given)
     RITZ_CHECK(model_as_reduced(&m, path, given));
     cli_record(run, m.kind == MODEL_COMPONENT ? "audit" : "probe",
                ritz_model_order(model_reference(&m)));
-    RITZ_CHECK_IN(path, m.kind == MODEL_COMPONENT
-                            ? ritz_audit_component(&m.component, &audit)
-                        : m.kind == MODEL_STATES
-                            ? ritz_audit_states(&m.states, &audit)
-                            : ritz_audit_reduced(&m.reduced, &audit));
+    RITZ_CHECK_IN(path, audit_model(&m, loads, &audit));
     checks_say(run, "checks", &audit);
     for (int64_t k = 0; k < audit.count; k++)
         cli_record_error(run, audit.check[k].name, audit.check[k].value);

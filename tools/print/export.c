@@ -447,9 +447,10 @@ static ritz_status export_model(cli_run *run, model *m,
 }
 
 /* Add the damping that is asked for and, with --states, make a state space. */
-static ritz_status settle_damping(model *m, const char *path,
+static ritz_status settle_damping(cli_run *run, model *m,
                                   const export_options *given)
 {
+    const char *path = run->operand[0];
     const char *text = given->model.damping;
 
     RITZ_REFUSE_IF((text || given->states) && m->kind != MODEL_REDUCED,
@@ -464,6 +465,7 @@ static ritz_status settle_damping(model *m, const char *path,
         ritz_damping_print(&m->damping, m->reduced.damping);
     if (!given->states)
         return RITZ_OK;
+    model_warn_loads(run, path, m->reduced.num_loads);
     RITZ_CHECK_IN(path, model_install(m, &given->model.damper));
     RITZ_CHECK_IN(path,
                   ritz_states_of_reduced(&m->reduced, &m->damping, &m->states));
@@ -523,7 +525,7 @@ ritz_status export_run(cli_run *run, const export_options *given)
         RITZ_CHECK(place_ports(run, &m, given));
     else
         RITZ_CHECK(model_as_reduced(&m, path, &given->model));
-    RITZ_CHECK(settle_damping(&m, path, given));
+    RITZ_CHECK(settle_damping(run, &m, given));
     RITZ_CHECK(export_model(run, &m, given, &done));
     cli_say(run, "%s: %s", run->output, given->exporter->summary);
     say_report(run, &done);

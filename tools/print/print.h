@@ -79,7 +79,8 @@ int reduce_main(int argc, char **argv,
  *
  * @return RITZ_ERR_FORMAT naming the first check that fails
  */
-ritz_status checks_run(cli_run *run, const model_options *given);
+ritz_status checks_run(cli_run *run, const model_options *given,
+                       const cli_list *loads);
 
 /** A table, the number of each verdict, and a list. */
 void checks_say(cli_run *run, const char *key, const ritz_audit *audit);

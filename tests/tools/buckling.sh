@@ -1,0 +1,86 @@
+#!/bin/sh
+# buckling.sh FOLDER-OF-THE-TOOLS - geometric stiffness of a column through the
+# chain, and the loads at which it buckles.
+. "$(dirname "$0")/tap.sh"
+
+column() { /usr/bin/python3 -s "$here/column.py" "$@"; }
+import_column() {
+    ritz-import -q --stiffness K.mtx --mass M.mtx --dofs dofs \
+        --bulk column.bdf --geometric-stiffness tip.mtx@tip \
+        --geometric-stiffness spin.mtx@spin_zz "$@"
+}
+
+works 'a column is made' column 12
+expect 0 '' import_column --port end=13:126 -o column.h5
+json 0 ritz-check column.h5
+holds '  it buckles at a quarter of pi^2' '
+    abs([c["value"] for c in j["checks"] if c["name"] == "buckling:tip"][0]
+        - 2.4674021) < 5e-8'
+holds '  and not if it is pulled' '
+    [c["value"] for c in j["checks"]
+     if c["name"] in ("buckling-reversed:tip", "buckling:spin_zz")] == 2 * [None]'
+expect 0 'K + 2.4674021 KG is singular' ritz-check column.h5
+expect 0 'make deflections 2.55 times as large' ritz-check column.h5 \
+    --load tip=1.5
+expect 1 'buckling-applied' ritz-check column.h5 --load tip=2.5
+expect 0 'stiffen it' ritz-check column.h5 --load spin_zz=5
+expect 0 '' ritz-check -q column.h5 --load tip=2.5 --load spin_zz=9
+
+ritz-basis -q craig-bampton --modes 6 column.h5 -o basis.h5
+expect 0 '' ritz-reduce -q column.h5 basis.h5 -o small.h5
+json 0 ritz-check small.h5
+holds '  a reduced column buckles a little later' '
+    0 <= [c["value"] for c in j["checks"]
+          if c["name"] == "buckling:tip"][0] - 2.4674021 < 1e-5'
+expect 1 'buckling-applied' ritz-check small.h5 --load tip=2.5
+expect 1 "there is no geometric stiffness of a load 'wind'" ritz-check \
+    small.h5 --load wind=1
+expect 1 "'tip' is not of the form NAME=X" ritz-check small.h5 --load tip
+
+# Where KG is K it stays K: in every method that projects, of one body, of two
+# that are joined, of a second stage and of the system's full model.
+expect 0 '' ritz-import -q --stiffness K.mtx --mass M.mtx --dofs dofs \
+    --bulk column.bdf --geometric-stiffness K.mtx@all --port end=13:126 \
+    --input push=13:2 --output-at see=13:2 -o all.h5
+for method in craig-bampton full guyan inertia-relief irs krylov \
+    krylov-cms-fixed krylov-cms-free macneal-rubin normal-modes rubin serep; do
+    case $method in
+    guyan | full | irs) how= ;;
+    serep) how='--modes 3' ;;
+    *) how='--modes 4' ;;
+    esac
+    # shellcheck disable=SC2086 # words
+    works "a basis by $method" ritz-basis -q $method $how all.h5 -o b.h5
+    works "is reduced" ritz-reduce -q all.h5 b.h5 -o "all-$method.h5"
+    works "and keeps KG = K" column alike "all-$method.h5"
+done
+ritz-basis -q balanced --modes 8 --damping 'modal 0.01' all.h5 -o b.h5
+expect 0 'geometric stiffness of 1 load is left out: a state space' \
+    ritz-reduce all.h5 b.h5 -o states.h5
+
+cat >pair.yaml <<'END'
+scene: two columns, tip to tip
+components:
+  left: {model: all.h5, basis: craig-bampton, modes: 3}
+  right: {model: all.h5, basis: craig-bampton, modes: 3}
+joints:
+  - {name: middle, type: fixed, between: [left/end, right/end]}
+band_hz: [0, 3]
+select: {by: band}
+END
+expect 0 '' ritz-assemble -q pair.yaml -o pair.h5
+expect 0 '' ritz-assemble -q --full pair.yaml -o whole.h5
+expect 0 '' ritz-compare -q pair.yaml --components compared- -o second.h5
+works 'systems and their bodies keep KG = K' column alike pair.h5 whole.h5 \
+    second.h5 compared-left.h5 compared-right.h5
+expect 0 'buckling:left:all' ritz-check pair.h5
+expect 0 '' ritz-verify -q all.h5 all-craig-bampton.h5 -o verified.h5
+expect 0 '' ritz-fit -q all.h5 --tolerance frequency=1e-2 --band-hz 0,3 \
+    -o fitted.h5
+works 'verified and fitted ones too' column alike verified.h5 fitted.h5
+
+works 'a free column is made' column 12 free
+expect 0 '' import_column --port end=13:126 -o free.h5
+expect 0 'not computed: a motion is free' ritz-check free.h5
+
+echo "1..$count"

@@ -1,0 +1,300 @@
+/*
+ * Buckling of columns, known in closed form; factors of both signs against
+ * LAPACK by an independent program; reduced models against full ones; Lanczos
+ * iterations against LAPACK; loads that act.
+ */
+#include "testing.h"
+
+#include "check/buckling.h"
+#include "column.h"
+#include "linear/extreme.h"
+#include "masses.h"
+
+#include <ritz/basis.h>
+#include <ritz/check.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+static const ritz_check *find(const ritz_audit *audit, const char *name)
+{
+    for (int64_t k = 0; k < audit->count; k++)
+        if (strcmp(audit->check[k].name, name) == 0)
+            return &audit->check[k];
+    fail_msg("there is no check '%s'", name);
+    return NULL;
+}
+
+static void a_cantilever_column_buckles_at_a_quarter_of_pi_square(void **state)
+{
+    RITZ_OWN(ritz_component) c = {0};
+    ritz_buckling *found = NULL;
+
+    (void)state;
+    assert_ok(column_component(12, COLUMN_CLAMPED_FREE, &c));
+    assert_ok(ritz_buckling_of_component(&c, &found));
+    /* oracle of 12 Hermite elements, to its last digit */
+    assert_near(found[COLUMN_TIP].factor, 2.4674021, 5e-8);
+    /* the mesh errs by (pi / 24)^4 / 720 */
+    assert_near(found[COLUMN_TIP].factor / (PI * PI / 4.0), 1.0, 5e-7);
+    assert_true(isnan(found[COLUMN_TIP].reversed));
+    assert_true(isnan(found[COLUMN_PULL].factor));
+    assert_near(found[COLUMN_PULL].reversed, -found[COLUMN_TIP].factor, 1e-12);
+    free(found);
+}
+
+static void a_pinned_column_buckles_at_pi_square(void **state)
+{
+    RITZ_OWN(ritz_component) c = {0};
+    ritz_buckling *found = NULL;
+
+    (void)state;
+    assert_ok(column_component(20, COLUMN_PINNED, &c));
+    assert_ok(ritz_buckling_of_component(&c, &found));
+    /* the mesh errs by (pi / 20)^4 / 720 */
+    assert_near(found[COLUMN_TIP].factor / (PI * PI), 1.0, 1e-6);
+    free(found);
+}
+
+/* Numbers of LAPACK, of a program that shares nothing with this one. */
+static void compare_both(const ritz_buckling *found, double factor,
+                         double reversed, double spin)
+{
+    /* twelve digits are given, and the stiffness has a condition of 1e9 */
+    assert_near(found[COLUMN_BOTH].factor / factor, 1.0, 1e-8);
+    assert_near(found[COLUMN_BOTH].reversed / reversed, 1.0, 1e-8);
+    assert_near(found[COLUMN_SPIN].reversed / spin, 1.0, 1e-8);
+    assert_true(isnan(found[COLUMN_SPIN].factor));
+}
+
+static void a_load_that_pushes_and_pulls_has_factors_of_both_signs(void **state)
+{
+    RITZ_OWN(ritz_component) c = {0};
+    ritz_buckling *found = NULL;
+
+    (void)state;
+    assert_ok(column_component(12, COLUMN_CLAMPED_FREE, &c));
+    assert_ok(ritz_buckling_of_component(&c, &found));
+    compare_both(found, 101.865575588, -11.0312830628, -10.243361021);
+    free(found);
+}
+
+static void iterations_find_what_lapack_finds(void **state)
+{
+    RITZ_OWN(ritz_component) c = {0};
+    RITZ_OWN(ritz_dense) K = {0};
+
+    (void)state;
+    assert_ok(column_component(40, COLUMN_CLAMPED_FREE, &c));
+    assert_ok(ritz_sparse_dense(&c.K, &K));
+    for (int k = 0; k < COLUMN_LOADS; k++) {
+        RITZ_OWN(ritz_dense) KG = {0};
+        ritz_buckling dense = {0}, iterated = {0};
+
+        assert_ok(ritz_sparse_dense(&c.load[k].KG, &KG));
+        assert_ok(ritz_buckling_dense(&K, &KG, &dense));
+        assert_ok(ritz_buckling_iterated(&c.K, &c.load[k].KG, &iterated));
+        assert_int_equal(isnan(dense.factor), isnan(iterated.factor));
+        assert_int_equal(isnan(dense.reversed), isnan(iterated.reversed));
+        /* eps times the condition of K, 1e8 */
+        if (!isnan(dense.factor))
+            assert_near(iterated.factor / dense.factor, 1.0, 2e-8);
+        if (!isnan(dense.reversed))
+            assert_near(iterated.reversed / dense.reversed, 1.0, 2e-8);
+    }
+}
+
+/* KG of rank one: the Krylov space ends after one vector. */
+static void a_load_of_rank_one_has_one_factor(void **state)
+{
+    RITZ_OWN(ritz_component) c = {0};
+    RITZ_OWN(ritz_sparse) KG = {0};
+    RITZ_OWN(ritz_factor) *F = NULL;
+    const int64_t at[] = {5};
+    const double value[] = {-2.0};
+    RITZ_OWN(ritz_dense) e = {0};
+    double theta = 0.0;
+
+    (void)state;
+    assert_ok(column_component(12, COLUMN_CLAMPED_FREE, &c));
+    assert_ok(ritz_sparse_from_triplets(c.num_dofs, c.num_dofs, 1, at, at,
+                                        value, &KG));
+    assert_ok(ritz_factor_spd(&c.K, &F));
+    assert_ok(ritz_extreme_value(&KG, &c.K, F, RITZ_END_LARGEST, &theta));
+    assert_ok(ritz_dense_new(c.num_dofs, 1, &e));
+    e.val[5] = 1.0;
+    assert_ok(ritz_factor_solve(F, &e));
+    assert_near(theta / (-2.0 * e.val[5]), 1.0, 1e-9);
+}
+
+static void nothing_buckles_without_geometric_stiffness(void **state)
+{
+    RITZ_OWN(ritz_component) c = {0};
+    RITZ_OWN(ritz_sparse) KG = {0};
+    RITZ_OWN(ritz_factor) *F = NULL;
+    ritz_buckling found = {0};
+    double theta = 1.0;
+
+    (void)state;
+    assert_ok(column_component(12, COLUMN_CLAMPED_FREE, &c));
+    assert_ok(ritz_sparse_new(c.num_dofs, c.num_dofs, 0, &KG));
+    assert_ok(ritz_buckling_sparse(&c.K, &KG, &found));
+    assert_true(isnan(found.factor) && isnan(found.reversed));
+    assert_ok(ritz_factor_spd(&c.K, &F));
+    assert_ok(ritz_extreme_value(&KG, &c.K, F, RITZ_END_LOWEST, &theta));
+    assert_true(theta == 0.0);
+}
+
+static void
+a_reduced_model_buckles_later_and_nearly_where_the_full_one_does(void **state)
+{
+    ritz_request request = RITZ_REQUEST_NONE;
+    RITZ_OWN(ritz_component) c = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
+    ritz_buckling *full = NULL, *small = NULL;
+
+    (void)state;
+    assert_ok(column_component(20, COLUMN_CLAMPED_FREE, &c));
+    request.component = &c;
+    request.modes = 8;
+    assert_ok(ritz_basis_make(&ritz_method_normal_modes, &request, &basis));
+    assert_ok(ritz_reduce(&c, &basis, &reduced));
+    assert_ok(ritz_buckling_of_component(&c, &full));
+    assert_ok(ritz_buckling_of_reduced(&reduced, &small));
+    assert_true(small[COLUMN_TIP].factor > full[COLUMN_TIP].factor);
+    /* measured: 8 modes err by 1.1e-4 */
+    assert_near(small[COLUMN_TIP].factor / full[COLUMN_TIP].factor, 1.0, 1e-3);
+    free(full);
+    free(small);
+}
+
+static void a_free_body_has_no_factor(void **state)
+{
+    RITZ_OWN(ritz_component) c = {0};
+    RITZ_OWN(ritz_audit) audit = {0};
+    ritz_buckling *found = NULL;
+    const ritz_applied tip = {"tip", 0.1};
+
+    (void)state;
+    assert_ok(column_component(12, COLUMN_FREE, &c));
+    assert_ok(ritz_buckling_of_component(&c, &found));
+    assert_null(found);
+    assert_ok(ritz_audit_component_under(&c, 1, &tip, &audit));
+    assert_int_equal(find(&audit, "buckling")->verdict, RITZ_WARN);
+    assert_non_null(strstr(find(&audit, "buckling")->says, "a motion is free"));
+}
+
+static void expect_verdict(const ritz_component *c, double amount,
+                           ritz_verdict verdict, const char *words)
+{
+    const ritz_applied tip = {"tip", amount};
+    RITZ_OWN(ritz_audit) audit = {0};
+    const ritz_check *line = NULL;
+
+    assert_ok(ritz_audit_component_under(c, 1, &tip, &audit));
+    line = find(&audit, "buckling-applied");
+    assert_int_equal(line->verdict, verdict);
+    assert_non_null(strstr(line->says, words));
+}
+
+static void a_load_above_half_of_its_buckling_load_warns(void **state)
+{
+    RITZ_OWN(ritz_component) c = {0};
+
+    (void)state;
+    assert_ok(column_component(12, COLUMN_CLAMPED_FREE, &c));
+    expect_verdict(&c, 1.2, RITZ_PASS, "48.6 % of those at which it buckles");
+    expect_verdict(&c, 1.3, RITZ_WARN, "deflections 2.11 times as large");
+    expect_verdict(&c, 2.5, RITZ_FAIL,
+                   "buckles at 0.986961 times the loads that act");
+    expect_verdict(&c, -3.0, RITZ_PASS, "the loads that act stiffen it");
+}
+
+/* The pull cancels half of the push. */
+static void loads_that_act_are_added(void **state)
+{
+    const ritz_applied both[] = {{"tip", 2.0}, {"pull", 1.0}};
+    RITZ_OWN(ritz_component) c = {0};
+    RITZ_OWN(ritz_audit) audit = {0};
+
+    (void)state;
+    assert_ok(column_component(12, COLUMN_CLAMPED_FREE, &c));
+    assert_ok(ritz_audit_component_under(&c, 2, both, &audit));
+    assert_near(find(&audit, "buckling-applied")->value, 2.4674021, 5e-8);
+    assert_near(find(&audit, "buckling:tip")->value, 2.4674021, 5e-8);
+    assert_true(isnan(find(&audit, "buckling-reversed:tip")->value));
+}
+
+static void a_load_that_is_not_there_is_refused(void **state)
+{
+    const ritz_applied wind = {"wind", 1.0}, huge = {"tip", HUGE_VAL};
+    RITZ_OWN(ritz_component) c = {0};
+    RITZ_OWN(ritz_audit) audit = {0};
+
+    (void)state;
+    assert_ok(column_component(4, COLUMN_CLAMPED_FREE, &c));
+    assert_fails(ritz_audit_component_under(&c, 1, &wind, &audit),
+                 RITZ_ERR_ARGUMENT,
+                 "there is no geometric stiffness of a load 'wind'");
+    assert_fails(ritz_audit_component_under(&c, 1, &huge, &audit),
+                 RITZ_ERR_ARGUMENT, "load 'tip' is not finite");
+}
+
+static ritz_status find_and_free(const ritz_component *c)
+{
+    RITZ_OWN(ritz_audit) audit = {0};
+    const ritz_applied tip = {"tip", 1.0};
+    ritz_buckling *found = NULL;
+
+    RITZ_CHECK(ritz_buckling_of_component(c, &found));
+    free(found);
+    return ritz_audit_component_under(c, 1, &tip, &audit);
+}
+
+static void buckling_survives_every_allocation(void **state)
+{
+    RITZ_OWN(ritz_component) small = {0};
+
+    (void)state;
+    assert_ok(column_component(2, COLUMN_CLAMPED_FREE, &small));
+    assert_survives_every_allocation(find_and_free(&small));
+}
+
+static ritz_status iterate(const ritz_component *c)
+{
+    ritz_buckling found = {0};
+
+    return ritz_buckling_iterated(&c->K, &c->load[COLUMN_BOTH].KG, &found);
+}
+
+static void iterations_survive_every_allocation(void **state)
+{
+    RITZ_OWN(ritz_component) c = {0};
+
+    (void)state;
+    assert_ok(column_component(2, COLUMN_CLAMPED_FREE, &c));
+    assert_survives_every_allocation(iterate(&c));
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_cantilever_column_buckles_at_a_quarter_of_pi_square),
+    cmocka_unit_test(a_pinned_column_buckles_at_pi_square),
+    cmocka_unit_test(a_load_that_pushes_and_pulls_has_factors_of_both_signs),
+    cmocka_unit_test(iterations_find_what_lapack_finds),
+    cmocka_unit_test(a_load_of_rank_one_has_one_factor),
+    cmocka_unit_test(nothing_buckles_without_geometric_stiffness),
+    cmocka_unit_test(
+        a_reduced_model_buckles_later_and_nearly_where_the_full_one_does),
+    cmocka_unit_test(a_free_body_has_no_factor),
+    cmocka_unit_test(a_load_above_half_of_its_buckling_load_warns),
+    cmocka_unit_test(loads_that_act_are_added),
+    cmocka_unit_test(a_load_that_is_not_there_is_refused),
+    cmocka_unit_test(buckling_survives_every_allocation),
+    cmocka_unit_test(iterations_survive_every_allocation),
+};
+
+TEST_MODULE(buckling, tests, NULL, NULL)
