@@ -10,6 +10,27 @@ static void list_integrators(void)
                (*i)->dissipation, (*i)->fails, (*i)->reference);
 }
 
+static void print_stabilisation(const ritz_stabilisation *s)
+{
+    printf("%s\n    %s\n    accuracy:    %s\n    needs:       %s\n"
+           "    stable:      %s\n    highest Hz:  %s\n    fails:       %s\n",
+           s->name, s->summary, s->accuracy, s->needs, s->stability,
+           s->frequency, s->fails);
+    for (int k = 0; k < RITZ_MOST_GAINS && s->gain[k].name; k++)
+        printf("    %s%s%s: %s\n", s->gain[k].name,
+               *s->gain[k].unit ? ", " : "", s->gain[k].unit,
+               s->gain[k].summary);
+    printf("    [%s]\n", s->reference);
+}
+
+static void list_all(void)
+{
+    list_integrators();
+    printf("\n--constraints, of scenes:\n\n");
+    for (const ritz_stabilisation *const *s = ritz_stabilisations; *s; s++)
+        print_stabilisation(*s);
+}
+
 static const cli_program program = {
     .name = "ritz-simulate",
     .operands = {{"FILE",
@@ -59,15 +80,24 @@ int main(int argc, char **argv)
         CLI_TEXT("checkpoint", &given.checkpoint, "FILE",
                  "keep what is done in FILE every half minute or so; the same "
                  "command continues from it"),
+        CLI_TEXT("constraints", &given.constraints, "METHOD[:NAME=VALUE,...]",
+                 "of a scene: joints hold by forces over time, not by "
+                 "elimination; one of --list"),
+        CLI_INT("start-digits", &given.start_digits, "N", 1, 17,
+                "with --constraints, round the bodies' initial values to N "
+                "digits, as a file has them"),
+        CLI_FLAG("any-step", &given.any_step,
+                 "with --constraints, accept a step that is not stable, to see "
+                 "it fail"),
         CLI_FLAG("cost", &given.cost,
                  "report what a simulated second costs, by each integrator"),
         CLI_PAIR("band-hz", given.band_hz, "F,F",
                  "band that --cost resolves [a system's own; else all "
                  "frequencies]"),
         MODEL_OPTIONS(&given.model),
-        CLI_ACTION("list", list_integrators,
-                   "list the integrators, with what they hold and where they "
-                   "fail"),
+        CLI_ACTION("list", list_all,
+                   "list integrators and ways to hold constraints, with what "
+                   "they hold and where they fail"),
         {0},
     };
     cli_run run;

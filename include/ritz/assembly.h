@@ -10,6 +10,7 @@
 #define RITZ_ASSEMBLY_H
 
 #include <ritz/basis.h>
+#include <ritz/constrained.h>
 #include <ritz/model.h>
 #include <ritz/ranking.h>
 #include <ritz/scene.h>
@@ -96,6 +97,19 @@ ritz_status ritz_stage_constraints(const ritz_stage *stage,
  */
 ritz_status ritz_stage_assemble(const ritz_stage *stage, const double *setting,
                                 ritz_configuration *out);
+
+/**
+ * The bodies at some settings without what joins them, for
+ * ritz_simulate_constrained().
+ *
+ * @param[in] joined   the system at these settings
+ * @param[in] damping  stated, of the system; NULL: none. A violation has none
+ * @return RITZ_ERR_ARGUMENT if a body has force columns or structural damping
+ */
+ritz_status ritz_stage_unjoined(const ritz_stage *stage, const double *setting,
+                                const ritz_configuration *joined,
+                                const ritz_damping *damping,
+                                ritz_unjoined *out);
 
 /** The system at every configuration of the scene, or at @p at alone. */
 ritz_status ritz_assemble(const ritz_stage *stage, const char *at,

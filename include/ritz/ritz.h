@@ -7,6 +7,7 @@
 #include <ritz/basis.h>
 #include <ritz/check.h>
 #include <ritz/component.h>
+#include <ritz/constrained.h>
 #include <ritz/container.h>
 #include <ritz/export.h>
 #include <ritz/fit.h>

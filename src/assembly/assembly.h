@@ -195,6 +195,10 @@ typedef struct ritz_springs {
 ritz_status ritz_stage_springs(const ritz_stage *stage, const double *setting,
                                ritz_springs *out);
 
+/** The same of all that joints lock: rows S q = 0, without scales. */
+ritz_status ritz_stage_locks(const ritz_stage *stage, const double *setting,
+                             ritz_springs *out);
+
 /**
  * K += P'S' k S P, or with @p damping D += P'S' c S P. An empty matrix stays
  * {0} if there is nothing to add.

@@ -221,6 +221,17 @@ ritz_status ritz_stage_springs(const ritz_stage *stage, const double *setting,
     return RITZ_OK;
 }
 
+ritz_status ritz_stage_locks(const ritz_stage *stage, const double *setting,
+                             ritz_springs *out)
+{
+    RITZ_OWN(ritz_springs) locked = {0};
+
+    RITZ_CHECK(
+        make_rows(stage, setting, RITZ_LOCKED, NULL, &locked.of, &locked.S));
+    RITZ_MOVE(*out, locked);
+    return RITZ_OK;
+}
+
 /*
  * The rank of the constraints has to be right: a row of rounding that is taken
  * for a constraint gives a wrong system [McDaniel2000, table 3.3]. The rank is

@@ -778,6 +778,16 @@
 /* Least processor time of one measurement of a step: some thousand times what
    the clock resolves and what reading it takes. */
 #define RITZ_MEASURED_SECONDS 2e-4
+/* What is left of the equation for a law of constraints at the end of a step,
+   relative to its terms: some eps, as each is a sum of as many terms as there
+   are constraints. */
+#define RITZ_LAW_SOLVED 1e-13
+/* Frequency up to which parameters of a constraint are chosen with an explicit
+   integrator, as part of what the step allows: a tenth is kept free. */
+#define RITZ_GAIN_ROOM 0.9
+/* A parameter that has less than this over the step is not chosen: violations
+   would last for tens of steps, and penalties be soft. */
+#define RITZ_GAIN_LEAST 0.1
 /* More steps are a mistake in a step or an end. */
 #define RITZ_MOST_STEPS 1e10
 /* A step that ends within this part of itself of the end, ends there. */

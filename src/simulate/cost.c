@@ -119,6 +119,12 @@ static ritz_status measure_repeated(repeated *r, int64_t count, double *out)
     return RITZ_OK;
 }
 
+ritz_status ritz_march_cost(ritz_march *march, const double *u, double *out)
+{
+    return measure_repeated(&(repeated){.march = march, .u = u}, FIRST_STEPS,
+                            out);
+}
+
 ritz_status ritz_simulate_step_cost(ritz_model model,
                                     const ritz_integrator *integrator,
                                     double step, double *out)
@@ -134,8 +140,7 @@ ritz_status ritz_simulate_step_cost(ritz_model model,
     RITZ_CHECK(ritz_motion_new(model, &request, &motion));
     RITZ_CHECK_NEW(u, motion.B.ncol);
     RITZ_CHECK(ritz_march_new(&motion, integrator, step, request.rho, &march));
-    return measure_repeated(&(repeated){.march = &march, .u = u}, FIRST_STEPS,
-                            out);
+    return ritz_march_cost(&march, u, out);
 }
 
 ritz_status ritz_simulate_cost(ritz_model model, const double band_hz[2],

@@ -31,8 +31,7 @@ static ritz_status refuse_structural(bool there)
     return RITZ_OK;
 }
 
-/* Modes as they are: what @p modes owns moves over. */
-static ritz_status take_modes(ritz_modal_model *modes, ritz_motion *m)
+ritz_status ritz_motion_take(ritz_modal_model *modes, ritz_motion *m)
 {
     m->form = RITZ_FORM_MODAL;
     m->n = modes->count;
@@ -79,7 +78,7 @@ static ritz_status motion_of_modes(const ritz_component *component,
     for (int64_t k = 0;
          rest.count > 0 && k < rest.num_outputs * rest.num_inputs; k++)
         modes.feed.val[k] += rest.part[0][k];
-    RITZ_CHECK(take_modes(&modes, &m));
+    RITZ_CHECK(ritz_motion_take(&modes, &m));
     m.highest = nan("");
     RITZ_MOVE(*out, m);
     return RITZ_OK;
@@ -288,7 +287,7 @@ ritz_status ritz_motion_dense(ritz_model subject, bool modal, ritz_motion *out)
     for (int64_t j = 0; j < modes.count; j++)
         highest = fmax(highest, fabs(modes.lambda[j]));
     if (modal || modes.count < modes.num_dofs) {
-        RITZ_CHECK(take_modes(&modes, &m));
+        RITZ_CHECK(ritz_motion_take(&modes, &m));
         if (!modal)
             RITZ_CHECK(fill_out(&m));
     } else {

@@ -48,6 +48,9 @@ typedef struct ritz_motion {
 /** Modal if @p modal, else dense: of its modes where M is singular. */
 ritz_status ritz_motion_dense(ritz_model subject, bool modal, ritz_motion *out);
 
+/** Modal, of modes as they are: what @p modes owns moves over. */
+ritz_status ritz_motion_take(ritz_modal_model *modes, ritz_motion *out);
+
 /** Whichever of them a subject and an integrator ask for. */
 ritz_status ritz_motion_new(ritz_model subject,
                             const ritz_simulation_request *request,
@@ -157,6 +160,17 @@ void ritz_march_outputs(const ritz_march *march, const double *u, double *y);
 /** Kinetic and potential energy of the present state. */
 void ritz_march_energy(const ritz_march *march, double *kinetic,
                        double *potential);
+
+/* Weights of Newmark's integrators and of generalised-alpha. */
+typedef struct ritz_newmark_weights {
+    double alpha_m, alpha_f, beta, gamma;
+} ritz_newmark_weights;
+
+/** Of generalised-alpha. @return RITZ_ERR_ARGUMENT if rho is not in 0 to 1 */
+ritz_status ritz_generalised_alpha(double rho, ritz_newmark_weights *out);
+
+/** Processor time, s, of a step with inputs @p u: the least of several. */
+ritz_status ritz_march_cost(ritz_march *march, const double *u, double *out);
 
 struct ritz_reach;
 

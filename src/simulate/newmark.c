@@ -35,12 +35,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct newmark_weights {
-    double alpha_m, alpha_f, beta, gamma;
-} newmark_weights;
-
 typedef struct newmark {
-    newmark_weights w;
+    ritz_newmark_weights w;
     ritz_effective F;
     double *memory; /* a, then last */
     double *a;      /* n, at the end of the last step */
@@ -94,7 +90,7 @@ static void load_step(const ritz_march *march, const double *u0,
                       const double *u1, newmark *s)
 {
     const ritz_motion *m = march->motion;
-    const newmark_weights *w = &s->w;
+    const ritz_newmark_weights *w = &s->w;
     double h = march->step;
     double f1 = 1.0 - w->alpha_f;
 
@@ -116,7 +112,7 @@ static void load_step(const ritz_march *march, const double *u0,
 /* x, v and a at the end; a_1 is in rhs. */
 static void move_step(ritz_march *march, newmark *s)
 {
-    const newmark_weights *w = &s->w;
+    const ritz_newmark_weights *w = &s->w;
     double h = march->step;
 
     for (int64_t k = 0; k < march->motion->n; k++) {
@@ -164,7 +160,7 @@ static ritz_status advance_newmark(ritz_march *march, const double *u0,
 }
 
 static ritz_status start_newmark(const ritz_motion *motion, double step,
-                                 const newmark_weights *w, ritz_march *out)
+                                 const ritz_newmark_weights *w, ritz_march *out)
 {
     double f1 = 1.0 - w->alpha_f;
     newmark *s = NULL;
@@ -195,7 +191,7 @@ static ritz_status start_newmark(const ritz_motion *motion, double step,
 static ritz_status start_trapezoidal(const ritz_motion *motion, double step,
                                      double rho, ritz_march *out)
 {
-    const newmark_weights weights = {0.0, 0.0, 0.25, 0.5};
+    const ritz_newmark_weights weights = {0.0, 0.0, 0.25, 0.5};
 
     (void)rho;
     if (motion->form == RITZ_FORM_STATES)
@@ -227,21 +223,27 @@ const ritz_integrator ritz_integrator_trapezoidal = {
  * least from low frequencies [ChungHulbert1993]. rho = 1 takes nothing, rho = 0
  * ends what it cannot resolve in one step.
  */
-static ritz_status start_generalised_alpha(const ritz_motion *motion,
-                                           double step, double rho,
-                                           ritz_march *out)
+ritz_status ritz_generalised_alpha(double rho, ritz_newmark_weights *w)
 {
-    newmark_weights w = {0};
-
     RITZ_REFUSE_IF(!(rho >= 0.0 && rho <= 1.0), RITZ_ERR_ARGUMENT,
                    "the spectral radius at infinite frequency is between 0 and "
                    "1, not %g",
                    rho);
-    w.alpha_m = (2.0 * rho - 1.0) / (rho + 1.0);
-    w.alpha_f = rho / (rho + 1.0);
-    w.gamma = 0.5 - w.alpha_m + w.alpha_f;
-    w.beta =
-        0.25 * (1.0 - w.alpha_m + w.alpha_f) * (1.0 - w.alpha_m + w.alpha_f);
+    w->alpha_m = (2.0 * rho - 1.0) / (rho + 1.0);
+    w->alpha_f = rho / (rho + 1.0);
+    w->gamma = 0.5 - w->alpha_m + w->alpha_f;
+    w->beta = 0.25 * (1.0 - w->alpha_m + w->alpha_f) *
+              (1.0 - w->alpha_m + w->alpha_f);
+    return RITZ_OK;
+}
+
+static ritz_status start_generalised_alpha(const ritz_motion *motion,
+                                           double step, double rho,
+                                           ritz_march *out)
+{
+    ritz_newmark_weights w = {0};
+
+    RITZ_CHECK(ritz_generalised_alpha(rho, &w));
     return start_newmark(motion, step, &w, out);
 }
 
@@ -272,7 +274,7 @@ static ritz_status start_central_difference(const ritz_motion *motion,
                                             double step, double rho,
                                             ritz_march *out)
 {
-    const newmark_weights weights = {0.0, 0.0, 0.0, 0.5};
+    const ritz_newmark_weights weights = {0.0, 0.0, 0.0, 0.5};
     double omega = sqrt(motion->highest);
 
     (void)rho;

@@ -340,13 +340,15 @@ ritz_status recover_run(cli_run *run, const recover_options *given);
 typedef struct simulation_options {
     const char *method, *hold; /* words of the command line */
     const ritz_integrator *integrator;
-    const char *initial;    /* "mode:K*A" or a file; NULL: at rest */
-    const char *checkpoint; /* NULL: none */
+    const char *initial;     /* "mode:K*A" or a file; NULL: at rest */
+    const char *checkpoint;  /* NULL: none */
+    const char *constraints; /* "METHOD:NAME=VALUE,..."; NULL: eliminated */
+    int64_t start_digits;    /* of the bodies' start; 0: all */
     double seconds, step, accuracy, rho, up_to_hz;
     double band_hz[2]; /* 0, 0: not given */
     int64_t every;
     cli_list input; /* "NAME=SIGNAL" */
-    bool hold_zero, cost, coordinates;
+    bool hold_zero, cost, coordinates, any_step;
     model_options model;
 } simulation_options;
 

@@ -39,6 +39,9 @@ typedef struct simulation_kind {
 /** All of them, ended by an empty one. */
 extern const simulation_kind simulation_kinds[];
 
+/** The bodies of a scene, joined over time as --constraints says. */
+simulation_function simulation_constrained;
+
 /**
  * Carry out a run, keep what is done in the checkpoint, if there is one, from
  * time to time, and continue from a checkpoint that is there.

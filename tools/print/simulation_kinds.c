@@ -2,6 +2,12 @@
    with its functions, and a row. */
 #include "print/simulation.h"
 
+static bool has_constraints(const simulation_options *given)
+{
+    return given->constraints;
+}
+
 const simulation_kind simulation_kinds[] = {
+    {"--constraints", has_constraints, simulation_constrained},
     {0},
 };

@@ -1,0 +1,380 @@
+/*
+ * Runs of joined bodies: a march whose state is that of all bodies, z and z',
+ * and which an integrator of the house advances with what a stabilisation adds,
+ * or that of index 2.
+ *
+ * Energies are of the bodies, and of the springs and masses of a penalty:
+ *
+ *     kinetic = |z'|^2 / 2 + inertia |c'|^2 / 2
+ *     potential = z'Lambda z / 2 + stiffness |c|^2 / 2
+ *
+ * The balance is what the integrator and the forces along violated constraints
+ * add: multipliers do no work where c' = 0.
+ */
+#include "simulate/constrained.h"
+
+#include "base/alloc.h"
+#include "base/tolerances.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { VIOLATION, RATE, MULTIPLIER, DIAGNOSTICS };
+
+static const char *const diagnostics[DIAGNOSTICS] = {
+    [VIOLATION] = "violation",
+    [RATE] = "violation-rate",
+    [MULTIPLIER] = "multiplier",
+};
+
+/* Of a march of joined bodies; freed in release_run. */
+typedef struct run_state {
+    const ritz_linked *joined; /* borrowed */
+    ritz_stabiliser terms;
+    ritz_motion motion;        /* for an integrator of the house */
+    ritz_march inner;          /* of that */
+    ritz_index2 index2;        /* if terms.implicit */
+    ritz_law_step law;         /* if terms.law */
+    double *before, *force;    /* n */
+    double *c, *rate, *mu, *g; /* rank */
+    double *u0, *u1;           /* inputs, behind them g */
+    double *saved;             /* the inner state at the start of a step */
+} run_state;
+
+static void release_run(void *own)
+{
+    run_state *s = own;
+
+    ritz_march_free(&s->inner);
+    ritz_motion_free(&s->motion);
+    ritz_index2_free(&s->index2);
+    ritz_law_step_free(&s->law);
+    RITZ_FREE(s->before, s->force, s->c, s->rate, s->mu, s->g, s->u0, s->u1,
+              s->saved, s);
+}
+
+/* The inner state to x and v, or from them. */
+static void exchange_state(bool in, ritz_march *march)
+{
+    run_state *s = march->own;
+    const size_t size = (size_t)march->motion->n * sizeof(double);
+
+    memcpy(in ? s->inner.x : march->x, in ? march->x : s->inner.x, size);
+    memcpy(in ? s->inner.v : march->v, in ? march->v : s->inner.v, size);
+}
+
+/* The inner state to `saved`, or back. */
+static void save_state(bool back, run_state *s)
+{
+    ritz_march *m = &s->inner;
+    const int64_t n = m->motion->n;
+    const struct {
+        double *at;
+        int64_t count;
+    } part[] = {{m->x, n}, {m->v, n}, {m->memory, m->num_memory}};
+    double *at = s->saved;
+
+    for (int k = 0; k < 3; at += part[k].count, k++)
+        if (part[k].count > 0)
+            memcpy(back ? part[k].at : at, back ? at : part[k].at,
+                   (size_t)part[k].count * sizeof *at);
+}
+
+static void find_gaps(run_state *s, const double *x, const double *v)
+{
+    ritz_linked_gap(s->joined, x, s->c);
+    ritz_linked_gap(s->joined, v, s->rate);
+}
+
+/* g of the present c and c'. */
+static void find_law(run_state *s, double *g)
+{
+    for (int64_t k = 0; k < s->joined->rank; k++) {
+        double out[3] = {0.0};
+
+        s->terms.law(&s->terms, s->c[k], s->rate[k], out);
+        g[k] = out[0];
+    }
+}
+
+/* A step with g: once without g at its end, which tells what it is there. */
+static ritz_status advance_law(run_state *s)
+{
+    const int64_t rank = s->joined->rank;
+    double *g1 = s->u1 + s->joined->motion.B.ncol;
+
+    find_gaps(s, s->inner.x, s->inner.v);
+    find_law(s, s->u0 + s->joined->motion.B.ncol);
+    memcpy(s->g, s->u0 + s->joined->motion.B.ncol, (size_t)rank * sizeof *s->g);
+    memset(g1, 0, (size_t)rank * sizeof *g1);
+    save_state(false, s);
+    RITZ_CHECK(s->inner.advance(&s->inner, s->u0, s->u1));
+    ritz_linked_gap(s->joined, s->inner.x, s->law.c);
+    ritz_linked_gap(s->joined, s->inner.v, s->law.rate);
+    memcpy(g1, s->g, (size_t)rank * sizeof *g1);
+    RITZ_CHECK(ritz_law_step_solve(&s->terms, &s->law, g1));
+    save_state(true, s);
+    return s->inner.advance(&s->inner, s->u0, s->u1);
+}
+
+/* z := (I - W'W) z, and z' likewise. */
+static void project_state(ritz_march *march)
+{
+    run_state *s = march->own;
+
+    find_gaps(s, march->x, march->v);
+    ritz_linked_push(s->joined, -1.0, s->c, march->x);
+    ritz_linked_push(s->joined, -1.0, s->rate, march->v);
+}
+
+/* h v'A v of A the damper of a penalty, v = (c_1 - c_0) / h. */
+static double dissipate_gaps(const run_state *s, double step)
+{
+    const double *g0 = s->u0 + s->joined->motion.B.ncol;
+    const double *g1 = s->u1 + s->joined->motion.B.ncol;
+    double sum = 0.0;
+
+    for (int64_t k = 0; k < s->joined->rank; k++) {
+        sum += s->terms.damping / step * s->c[k] * s->c[k];
+        if (s->terms.law)
+            sum -= 0.5 * (g0[k] + g1[k]) * s->c[k];
+    }
+    return sum;
+}
+
+/* As of the integrators of the house: work by the change of z over the step. */
+static void account_energy(ritz_march *march, const double *u0,
+                           const double *u1)
+{
+    const ritz_motion *m = march->motion;
+    run_state *s = march->own;
+
+    for (int64_t k = 0; k < m->n; k++)
+        s->before[k] = march->x[k] - s->before[k];
+    for (int64_t j = 0; j < m->B.ncol; j++)
+        march->work +=
+            0.5 * (u0[j] + u1[j]) *
+            ritz_motion_dot(m->n, ritz_dense_col(&m->B, j), s->before);
+    memset(s->force, 0, (size_t)m->n * sizeof *s->force);
+    ritz_motion_gemv(&m->D, 1.0 / march->step, s->before, s->force);
+    march->dissipated += ritz_motion_dot(m->n, s->before, s->force);
+    if (s->terms.multipliers)
+        return;
+    ritz_linked_gap(s->joined, s->before, s->c);
+    march->dissipated += dissipate_gaps(s, march->step);
+}
+
+static ritz_status advance_run(ritz_march *march, const double *u0,
+                               const double *u1)
+{
+    const size_t inputs = (size_t)march->motion->B.ncol * sizeof(double);
+    run_state *s = march->own;
+
+    memcpy(s->before, march->x, (size_t)march->motion->n * sizeof(double));
+    if (s->terms.implicit) {
+        ritz_index2_step(&s->index2, u0, u1, march->x, march->v);
+    } else {
+        memcpy(s->u0, u0, inputs);
+        memcpy(s->u1, u1, inputs);
+        exchange_state(true, march);
+        RITZ_CHECK(s->terms.law ? advance_law(s)
+                                : s->inner.advance(&s->inner, s->u0, s->u1));
+        exchange_state(false, march);
+    }
+    if (s->terms.projects)
+        project_state(march);
+    account_energy(march, u0, u1);
+    return RITZ_OK;
+}
+
+static ritz_status settle_run(ritz_march *march, const double *u)
+{
+    run_state *s = march->own;
+
+    if (s->terms.implicit) {
+        ritz_index2_settle(&s->index2, march->x, march->v, u);
+        return RITZ_OK;
+    }
+    exchange_state(true, march);
+    memcpy(s->u0, u, (size_t)march->motion->B.ncol * sizeof *u);
+    if (s->terms.law) {
+        find_gaps(s, march->x, march->v);
+        find_law(s, s->u0 + march->motion->B.ncol);
+    }
+    return s->inner.settle(&s->inner, s->u0);
+}
+
+/* mu = W z'' of free bodies - W z''. */
+static void find_multipliers(const ritz_march *march, const double *u)
+{
+    const ritz_motion *m = march->motion;
+    run_state *s = march->own;
+    const ritz_stabiliser *t = &s->terms;
+
+    for (int64_t k = 0; k < m->n; k++)
+        s->force[k] = -m->lambda[k] * march->x[k];
+    ritz_motion_gemv(&m->B, 1.0, u, s->force);
+    ritz_motion_gemv(&m->D, -1.0, march->v, s->force);
+    ritz_linked_gap(s->joined, s->force, s->mu);
+    find_gaps(s, march->x, march->v);
+    memset(s->g, 0, (size_t)s->joined->rank * sizeof *s->g);
+    if (t->law)
+        find_law(s, s->g);
+    for (int64_t k = 0; k < s->joined->rank; k++) {
+        const double held =
+            t->stiffness * s->c[k] + t->damping * s->rate[k] - s->g[k];
+
+        s->mu[k] = t->multipliers
+                       ? s->mu[k] + held
+                       : s->mu[k] - (s->mu[k] - held) / (1.0 + t->inertia);
+    }
+}
+
+/* Accelerations are those of free bodies, less what the multipliers take. */
+static void find_outputs(const ritz_march *march, const double *u, double *y)
+{
+    const ritz_motion *m = march->motion;
+    const run_state *s = march->own;
+
+    for (int64_t i = 0; i < m->C.nrow; i++)
+        y[i] = 0.0;
+    ritz_motion_gemv(&m->C, 1.0, march->x, y);
+    ritz_motion_gemv(&m->Cv, 1.0, march->v, y);
+    ritz_motion_gemv(&m->feed, 1.0, u, y);
+    find_multipliers(march, u);
+    ritz_motion_gemv(&s->joined->reach, -1.0, s->mu, y);
+}
+
+static void find_energy(const ritz_march *march, double *kinetic,
+                        double *potential)
+{
+    const ritz_motion *m = march->motion;
+    run_state *s = march->own;
+
+    *kinetic = *potential = 0.0;
+    for (int64_t k = 0; k < m->n; k++) {
+        *kinetic += 0.5 * march->v[k] * march->v[k];
+        *potential += 0.5 * m->lambda[k] * march->x[k] * march->x[k];
+    }
+    if (s->terms.multipliers)
+        return;
+    find_gaps(s, march->x, march->v);
+    for (int64_t k = 0; k < s->joined->rank; k++) {
+        *kinetic += 0.5 * s->terms.inertia * s->rate[k] * s->rate[k];
+        *potential += 0.5 * s->terms.stiffness * s->c[k] * s->c[k];
+    }
+}
+
+/* Largest |A x| of a row. */
+static double find_largest(const ritz_dense *A, const double *x)
+{
+    double most = 0.0;
+
+    for (int64_t i = 0; i < A->nrow; i++) {
+        double sum = 0.0;
+
+        for (int64_t j = 0; j < A->ncol; j++)
+            sum += ritz_dense_col(A, j)[i] * x[j];
+        most = fmax(most, fabs(sum));
+    }
+    return most;
+}
+
+/* Behind find_outputs, which found the multipliers. */
+static void diagnose_run(const ritz_march *march, double *out)
+{
+    const run_state *s = march->own;
+
+    out[VIOLATION] = find_largest(&s->joined->G, march->x);
+    out[RATE] = find_largest(&s->joined->G, march->v);
+    out[MULTIPLIER] = find_largest(&s->joined->L, s->mu);
+}
+
+/* What a unit g at the end of a step adds to c and c' there. */
+static ritz_status find_influence(run_state *s)
+{
+    const int64_t inputs = s->joined->motion.B.ncol;
+    const int64_t rank = s->joined->rank;
+
+    RITZ_CHECK(ritz_law_step_new(rank, &s->law));
+    save_state(false, s); /* at rest */
+    for (int64_t j = 0; j < rank; j++) {
+        s->u1[inputs + j] = 1.0;
+        RITZ_CHECK(s->inner.advance(&s->inner, s->u0, s->u1));
+        s->u1[inputs + j] = 0.0;
+        ritz_linked_gap(s->joined, s->inner.x, ritz_dense_col(&s->law.X, j));
+        ritz_linked_gap(s->joined, s->inner.v, ritz_dense_col(&s->law.V, j));
+        save_state(true, s);
+    }
+    return RITZ_OK;
+}
+
+static ritz_status start_inner(const ritz_simulation_request *request,
+                               run_state *s, ritz_march *out)
+{
+    RITZ_CHECK(ritz_stabilised_motion(s->joined, &s->terms, &s->motion));
+    RITZ_CHECK(ritz_march_new(&s->motion, request->integrator, request->step,
+                              request->rho, &s->inner));
+    RITZ_CHECK_NEW(s->saved, 2 * s->motion.n + s->inner.num_memory);
+    out->memory = s->inner.memory;
+    out->num_memory = s->inner.num_memory;
+    return s->terms.law ? find_influence(s) : RITZ_OK;
+}
+
+static ritz_status start_run(const ritz_linked *joined,
+                             const ritz_stabiliser *terms,
+                             const ritz_simulation_request *request,
+                             ritz_march *out)
+{
+    const int64_t n = joined->motion.n;
+    const int64_t rank = joined->rank;
+    run_state *s = NULL;
+
+    RITZ_CHECK_NEW(s, 1);
+    out->own = s;
+    out->free = release_run;
+    s->joined = joined;
+    s->terms = *terms;
+    RITZ_CHECK_NEW(s->before, n);
+    RITZ_CHECK_NEW(s->force, n);
+    RITZ_CHECK_NEW(s->c, rank);
+    RITZ_CHECK_NEW(s->rate, rank);
+    RITZ_CHECK_NEW(s->mu, rank);
+    RITZ_CHECK_NEW(s->g, rank);
+    RITZ_CHECK_NEW(s->u0, joined->motion.B.ncol + rank);
+    RITZ_CHECK_NEW(s->u1, joined->motion.B.ncol + rank);
+    if (!terms->implicit)
+        return start_inner(request, s, out);
+    RITZ_CHECK(
+        ritz_index2_new(joined, request->step, request->rho, &s->index2));
+    out->memory = s->index2.memory;
+    out->num_memory = s->index2.num_memory;
+    return RITZ_OK;
+}
+
+ritz_status ritz_constrained_march(const ritz_linked *joined,
+                                   const ritz_stabiliser *terms,
+                                   const ritz_simulation_request *request,
+                                   ritz_march *out)
+{
+    RITZ_OWN(ritz_march)
+    march = {
+        .motion = &joined->motion,
+        .step = request->step,
+        .advance = advance_run,
+        .settle = settle_run,
+        .outputs = find_outputs,
+        .energy = find_energy,
+        .diagnose = diagnose_run,
+        .num_diagnostics = DIAGNOSTICS,
+        .diagnostic = diagnostics,
+    };
+
+    RITZ_CHECK_NEW(march.x, joined->motion.n);
+    RITZ_CHECK_NEW(march.v, joined->motion.n);
+    RITZ_CHECK(start_run(joined, terms, request, &march));
+    RITZ_MOVE(*out, march);
+    return RITZ_OK;
+}

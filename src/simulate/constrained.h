@@ -1,0 +1,121 @@
+/*
+ * Joined bodies in the modes of the unjoined ones, q = Phi z, Phi'M Phi = I:
+ *
+ *     z'' + D z' + Lambda z = B u - W'mu,    c = W z = 0,    W W' = I
+ *
+ * W has orthonormal rows, as many as the rank of the constraints, and spans
+ * what the rows of C Phi span. With M = I its inner product is that of M. What
+ * a stabilisation adds acts on c alone.
+ */
+#ifndef RITZ_SIMULATE_CONSTRAINED_H
+#define RITZ_SIMULATE_CONSTRAINED_H
+
+#include "simulate/motion.h"
+
+#include <ritz/constrained.h>
+
+typedef struct ritz_linked {
+    ritz_motion motion; /* modal, of the unjoined bodies; an impulse acts on
+                           the joined ones */
+    int64_t num_rows, rank;
+    ritz_dense W;     /* rank x n */
+    ritz_dense G;     /* num_rows x n, C Phi */
+    ritz_dense L;     /* num_rows x rank: lambda = L mu, of least length */
+    ritz_dense reach; /* outputs x rank: what -mu adds to outputs that are
+                          accelerations */
+    double highest;   /* eigenvalue of the joined bodies */
+    double unjoined;  /* the same of the unjoined ones */
+    int64_t num_redundant;
+    int64_t *redundant;
+} ritz_linked;
+
+ritz_status ritz_linked_new(const ritz_unjoined *bodies, ritz_linked *out);
+void ritz_linked_free(ritz_linked *joined);
+
+/** out = W x, rank numbers. */
+void ritz_linked_gap(const ritz_linked *joined, const double *x, double *out);
+/** y += alpha W'mu. */
+void ritz_linked_push(const ritz_linked *joined, double alpha, const double *mu,
+                      double *y);
+
+/*
+ * What a stabilisation does to c:
+ *
+ *     c'' = [c'' of free bodies] - stiffness c - damping c' + g(c, c'),
+ *
+ * the first term left out where it works with multipliers, and the whole
+ * divided by 1 + inertia where it does not.
+ */
+typedef struct ritz_stabiliser {
+    bool multipliers; /* forces along the constraints are cancelled */
+    bool projects;    /* z and z' at the end of each step */
+    bool implicit;    /* index 2: no terms, an integrator of its own */
+    double stiffness, damping, inertia;
+    double stiffest; /* of c, with the steepest part of g */
+    double own[3];   /* of the law */
+    /** g of one constraint, and its derivatives by c and c'; NULL: 0. */
+    void (*law)(const struct ritz_stabiliser *s, double c, double rate,
+                double out[3]);
+} ritz_stabiliser;
+
+/**
+ * Makes a motion of what integrators of the house act on, dense, with g as
+ * further inputs behind those of the bodies if there is a law.
+ */
+ritz_status ritz_stabilised_motion(const ritz_linked *joined,
+                                   const ritz_stabiliser *s, ritz_motion *out);
+
+/** Highest eigenvalue of that motion. */
+ritz_status ritz_stabilised_highest(const ritz_linked *joined,
+                                    const ritz_stabiliser *s, double *out);
+
+/* Generalised-alpha of index 2, for a joined motion. */
+typedef struct ritz_index2 {
+    const ritz_linked *joined; /* borrowed */
+    double step;
+    ritz_newmark_weights w;
+    ritz_general_factor S;   /* n */
+    ritz_general_factor WSW; /* rank */
+    ritz_dense SW;           /* n x rank, S^-1 W' */
+    int64_t num_memory;
+    double *memory;          /* a, z'' and inputs at the end of the last step */
+    double *a, *rate, *last; /* in memory */
+    double *x, *v, *r;       /* n, to work in */
+    double *eta, *mu;        /* rank */
+} ritz_index2;
+
+ritz_status ritz_index2_new(const ritz_linked *joined, double step, double rho,
+                            ritz_index2 *out);
+/** The acceleration at the start. */
+void ritz_index2_settle(ritz_index2 *s, const double *x, const double *v,
+                        const double *u);
+void ritz_index2_step(ritz_index2 *s, const double *u0, const double *u1,
+                      double *x, double *v);
+void ritz_index2_free(ritz_index2 *s);
+
+/* g at the end of a step, as a further input that is linear over it. */
+typedef struct ritz_law_step {
+    int64_t rank;
+    ritz_dense X, V;  /* rank x rank: what a unit g at the end adds to c, c' */
+    ritz_dense J;     /* rank x rank, to work in */
+    double *c, *rate; /* rank: without g at the end */
+    double *trial, *residual, *change; /* rank */
+} ritz_law_step;
+
+ritz_status ritz_law_step_new(int64_t rank, ritz_law_step *out);
+/**
+ * Solves g = law(c + X g, c' + V g) by Newton's method.
+ *
+ * @return RITZ_ERR_CONVERGENCE
+ */
+ritz_status ritz_law_step_solve(const ritz_stabiliser *s, ritz_law_step *l,
+                                double *g);
+void ritz_law_step_free(ritz_law_step *l);
+
+/** A march of joined bodies, which both must outlive. */
+ritz_status ritz_constrained_march(const ritz_linked *joined,
+                                   const ritz_stabiliser *terms,
+                                   const ritz_simulation_request *request,
+                                   ritz_march *out);
+
+#endif

@@ -1,0 +1,267 @@
+/*
+ * Constrained runs: parameters by their rules, the limit of the step, and what
+ * is known beside the motion.
+ *
+ * Parameters are chosen from base = 1 / step: half of what an explicit
+ * integrator resolves, and as fast as an implicit one follows. With an explicit
+ * one, base^2 + highest^2 <= (0.9 2 / step)^2, highest that of the bodies, so
+ * that both fit.
+ */
+#include "simulate/constrained.h"
+
+#include "base/alloc.h"
+#include "base/text.h"
+#include "base/tolerances.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static ritz_status read_gain(char *word, ritz_constrained_request *how)
+{
+    const ritz_gain *gain = how->method->gain;
+    char *equals = strchr(word, '=');
+    int64_t count = 0, k = 0;
+
+    while (count < RITZ_MOST_GAINS && gain[count].name)
+        count++;
+    RITZ_REFUSE_IF(!equals, RITZ_ERR_ARGUMENT, "'%s' is not NAME=VALUE", word);
+    *equals = '\0';
+    while (k < count && strcmp(gain[k].name, word) != 0)
+        k++;
+    RITZ_REFUSE_IF(k == count, RITZ_ERR_ARGUMENT,
+                   "'%s' has no parameter '%s'%s%s", how->method->name, word,
+                   count > 0 ? ", its first is " : "",
+                   count > 0 ? gain[0].name : "");
+    RITZ_REFUSE_IF(!ritz_text_real(equals + 1, &how->gain[k]) ||
+                       !(how->gain[k] >= 0.0),
+                   RITZ_ERR_ARGUMENT, "'%s' of %s is a number, not '%s'", word,
+                   how->method->name, equals + 1);
+    return RITZ_OK;
+}
+
+ritz_status ritz_constrained_parse(const char *text,
+                                   ritz_constrained_request *out)
+{
+    ritz_constrained_request how = {0};
+    char copy[4 * RITZ_NAME_SIZE];
+    char *words = NULL;
+
+    RITZ_REFUSE_IF(strlen(text) >= sizeof copy, RITZ_ERR_ARGUMENT,
+                   "a stabilisation is METHOD:NAME=VALUE,...");
+    memcpy(copy, text, strlen(text) + 1);
+    words = strchr(copy, ':');
+    if (words)
+        *words++ = '\0';
+    for (const ritz_stabilisation *const *s = ritz_stabilisations; *s; s++)
+        if (strcmp((*s)->name, copy) == 0)
+            how.method = *s;
+    RITZ_REFUSE_IF(!how.method, RITZ_ERR_ARGUMENT,
+                   "no stabilisation is called '%s': see --list", copy);
+    for (int k = 0; k < RITZ_MOST_GAINS; k++)
+        how.gain[k] = nan("");
+    while (words) {
+        char *word = words;
+
+        words = strchr(words, ',');
+        if (words)
+            *words++ = '\0';
+        RITZ_CHECK(read_gain(word, &how));
+    }
+    *out = how;
+    return RITZ_OK;
+}
+
+/* Forces and violations at the start, in modes; f = |W z''| that the start and
+   the amplitudes of the inputs ask for. */
+static ritz_status measure_start(const ritz_linked *j,
+                                 const ritz_simulation_request *request,
+                                 ritz_gain_scales *scales)
+{
+    const ritz_motion *m = &j->motion;
+    RITZ_OWN_ARRAY double *part = NULL, *force = NULL;
+    const double *const from[] = {request->x0, request->v0};
+    double size[2] = {0.0};
+
+    RITZ_CHECK_NEW(part, j->rank);
+    RITZ_CHECK_NEW(force, m->n);
+    for (int p = 0; p < 2 && j->rank > 0; p++) {
+        for (int64_t k = 0; from[p] && k < m->n; k++)
+            force[k] = ritz_motion_dot(m->original, ritz_dense_col(&m->to, k),
+                                       from[p]);
+        ritz_linked_gap(j, force, part);
+        size[p] = sqrt(ritz_motion_dot(j->rank, part, part));
+        for (int64_t k = 0; k < m->n; k++)
+            force[k] *= p == 0 ? m->lambda[k] : sqrt(fabs(m->lambda[k]));
+        ritz_linked_gap(j, force, part);
+        scales->force += sqrt(ritz_motion_dot(j->rank, part, part));
+        memset(force, 0, (size_t)m->n * sizeof *force);
+    }
+    scales->violation = size[0];
+    scales->rate = size[1];
+    for (int64_t k = 0; request->signal && k < m->B.ncol; k++) {
+        ritz_linked_gap(j, ritz_dense_col(&m->B, k), part);
+        scales->force += fabs(request->signal[k].amplitude) *
+                         sqrt(ritz_motion_dot(j->rank, part, part));
+    }
+    return RITZ_OK;
+}
+
+/* Parameters that are not given, and what the method makes of all. */
+static ritz_status find_terms(const ritz_linked *j,
+                              const ritz_constrained_request *how,
+                              const ritz_simulation_request *request,
+                              double *gain, ritz_stabiliser *terms)
+{
+    ritz_gain_scales scales = {.base = 1.0 / request->step,
+                               .step = request->step};
+    const double most = RITZ_GAIN_ROOM * 2.0 / request->step;
+    const double room = fmax(most * most - j->unjoined, 0.0);
+    double chosen[RITZ_MOST_GAINS] = {0.0};
+
+    if (request->integrator->is_explicit)
+        scales.base = fmin(scales.base, sqrt(room));
+    RITZ_CHECK(measure_start(j, request, &scales));
+    if (how->method->choose)
+        how->method->choose(&scales, chosen);
+    for (int k = 0; k < RITZ_MOST_GAINS; k++) {
+        RITZ_REFUSE_IF(how->method->gain[k].name && isnan(how->gain[k]) &&
+                           scales.base < RITZ_GAIN_LEAST / request->step,
+                       RITZ_ERR_ARGUMENT,
+                       "the highest frequency of the bodies, %.6g Hz, leaves "
+                       "'%s' of %s no room at a step of %g s: take a smaller "
+                       "step, or give it",
+                       sqrt(j->unjoined) / (2.0 * RITZ_PI),
+                       how->method->gain[k].name, how->method->name,
+                       request->step);
+        gain[k] = isnan(how->gain[k]) ? chosen[k] : how->gain[k];
+    }
+    if (how->method == &ritz_stabilisation_sliding_mode &&
+        isnan(how->gain[2])) /* the layer follows the switching part */
+        gain[2] = gain[1] * request->step;
+    return ritz_context(how->method->terms(gain, terms), how->method->name);
+}
+
+/* An explicit integrator has no step beyond 2 / omega. */
+static ritz_status check_step(const ritz_constrained_request *how,
+                              const ritz_simulation_request *request,
+                              const ritz_constrained_facts *facts)
+{
+    const double own = 2.0 * RITZ_PI * facts->joined_hz;
+    const double most = 2.0 / request->step;
+
+    if (how->any_step || !request->integrator->is_explicit ||
+        request->step < facts->step_limit)
+        return RITZ_OK;
+    RITZ_REFUSE_IF(own >= most, RITZ_ERR_ARGUMENT,
+                   "a step of %g s is not stable: the highest frequency, %.6g "
+                   "Hz, limits it to %.6g s",
+                   request->step, facts->joined_hz, 2.0 / own);
+    return ritz_fail(RITZ_ERR_ARGUMENT,
+                     "a step of %g s is not stable: %s raises the highest "
+                     "frequency from %.6g Hz to %.6g Hz, which limits it to "
+                     "%.6g s; with this step, constraints have room up to "
+                     "%.6g rad/s, %.6g Hz",
+                     request->step, how->method->name, facts->joined_hz,
+                     facts->highest_hz, facts->step_limit,
+                     sqrt(most * most - own * own),
+                     sqrt(most * most - own * own) / (2.0 * RITZ_PI));
+}
+
+static ritz_status find_facts(const ritz_linked *j,
+                              const ritz_stabiliser *terms,
+                              ritz_constrained_facts *facts)
+{
+    double highest = 0.0;
+
+    RITZ_CHECK(ritz_stabilised_highest(j, terms, &highest));
+    facts->num_rows = j->num_rows;
+    facts->rank = j->rank;
+    facts->num_redundant = j->num_redundant;
+    RITZ_CHECK_COPY(facts->redundant, j->redundant, j->num_redundant);
+    facts->joined_hz = sqrt(j->highest) / (2.0 * RITZ_PI);
+    facts->highest_hz = sqrt(highest) / (2.0 * RITZ_PI);
+    facts->step_limit = highest > 0.0 ? 2.0 / sqrt(highest) : HUGE_VAL;
+    return RITZ_OK;
+}
+
+/* A step at rest. */
+static ritz_status find_cost(const ritz_linked *j, const ritz_stabiliser *terms,
+                             const ritz_simulation_request *request,
+                             double *out)
+{
+    RITZ_OWN(ritz_march) march = {0};
+    RITZ_OWN_ARRAY double *u = NULL;
+
+    RITZ_CHECK_NEW(u, j->motion.B.ncol);
+    RITZ_CHECK(ritz_constrained_march(j, terms, request, &march));
+    return ritz_march_cost(&march, u, out);
+}
+
+/* The request with the integrator that is meant, under the name of both. */
+static void name_run(const ritz_constrained_request *how,
+                     const ritz_simulation_request *request,
+                     ritz_integrator *integrator, char name[RITZ_NAME_SIZE])
+{
+    const bool own = !how->method->integrator;
+
+    *integrator = own ? ritz_integrator_generalised_alpha
+                  : request->integrator == &ritz_integrator_modal
+                      ? *how->method->integrator
+                      : *request->integrator;
+    (void)snprintf(name, RITZ_NAME_SIZE, "%s %s", how->method->name,
+                   integrator->name);
+    integrator->name = name;
+}
+
+static ritz_status label_run(const ritz_unjoined *bodies, ritz_simulation *s)
+{
+    const ritz_second_order dense = {
+        .K = &bodies->K, .M = &bodies->M, .io = &bodies->io};
+
+    return ritz_simulation_label(ritz_model_of_dense(&dense, NULL), s);
+}
+
+ritz_status ritz_simulate_constrained(const ritz_unjoined *bodies,
+                                      const ritz_constrained_request *how,
+                                      const ritz_simulation_request *request,
+                                      ritz_constrained_facts *facts,
+                                      ritz_simulation *out)
+{
+    ritz_simulation_request asked = *request;
+    ritz_integrator integrator = {0};
+    char name[RITZ_NAME_SIZE];
+    RITZ_OWN(ritz_linked) joined = {0};
+    RITZ_OWN(ritz_march) march = {0};
+    RITZ_OWN(ritz_constrained_facts) found = {0};
+    RITZ_OWN(ritz_simulation) s = {0};
+    ritz_stabiliser terms = {0};
+    int64_t steps = 0;
+
+    RITZ_REFUSE_IF(request->coordinates, RITZ_ERR_ARGUMENT,
+                   "coordinates are of joined bodies: run them without "
+                   "constraints");
+    RITZ_CHECK(ritz_request_steps(request, &steps));
+    name_run(how, request, &integrator, name);
+    asked.integrator = &integrator;
+    RITZ_CHECK(ritz_linked_new(bodies, &joined));
+    RITZ_CHECK(find_terms(&joined, how, &asked, found.gain, &terms));
+    RITZ_CHECK(find_facts(&joined, &terms, &found));
+    RITZ_CHECK(check_step(how, &asked, &found));
+    RITZ_CHECK(ritz_constrained_march(&joined, &terms, &asked, &march));
+    RITZ_CHECK(ritz_march_run(&march, &asked, NULL, &s));
+    RITZ_CHECK(label_run(bodies, &s));
+    if (facts)
+        RITZ_CHECK(find_cost(&joined, &terms, &asked, &found.step_cost));
+    RITZ_MOVE(*out, s);
+    if (facts)
+        RITZ_MOVE(*facts, found);
+    return RITZ_OK;
+}
+
+void ritz_constrained_facts_free(ritz_constrained_facts *facts)
+{
+    RITZ_FREE(facts->redundant);
+    *facts = (ritz_constrained_facts){0};
+}

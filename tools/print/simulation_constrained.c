@@ -1,0 +1,121 @@
+/* Bodies of a scene that are joined over time. */
+#include "print/simulation.h"
+
+#include "base/alloc.h"
+#include "base/tolerances.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+/* How many names of redundant rows are printed. */
+enum { MOST_NAMES = 6 };
+
+/* To so many digits, as a file has them. */
+static void round_values(int64_t digits, int64_t n, double *x)
+{
+    char text[64];
+
+    for (int64_t k = 0; k < n; k++) {
+        (void)snprintf(text, sizeof text, "%.*e", (int)digits - 1, x[k]);
+        (void)ritz_text_real(text, &x[k]);
+    }
+}
+
+/* q = P y of values of the system; NULL of none. */
+static ritz_status find_start(const simulation_options *given,
+                              const ritz_unjoined *bodies, const double *y,
+                              double **out)
+{
+    RITZ_OWN(ritz_dense) q = {0};
+    RITZ_OWN_ARRAY double *copy = NULL;
+    ritz_dense from = {bodies->P.ncol, 1, NULL}; /* borrowed */
+
+    if (!y)
+        return RITZ_OK;
+    RITZ_CHECK_COPY(copy, y, from.nrow);
+    from.val = copy;
+    RITZ_CHECK(ritz_dense_mul(&bodies->P, &from, &q));
+    if (given->start_digits > 0)
+        round_values(given->start_digits, q.nrow, q.val);
+    RITZ_MOVE(*out, q.val);
+    return RITZ_OK;
+}
+
+static void say_redundant(cli_run *run, const ritz_unjoined *bodies,
+                          const ritz_constrained_facts *facts)
+{
+    SINK_EACH(run, "redundant", k, facts->num_redundant)
+        sink_add(run, "%s", bodies->row[facts->redundant[k]]);
+    for (int64_t k = 0; k < facts->num_redundant && k < MOST_NAMES; k++)
+        sink_field(run, k == 0 ? "redundant" : "", "", "%s",
+                   bodies->row[facts->redundant[k]]);
+    if (facts->num_redundant > MOST_NAMES)
+        sink_field(run, "", "", "and %ld more",
+                   facts->num_redundant - MOST_NAMES);
+}
+
+static void say_facts(cli_run *run, const ritz_unjoined *bodies,
+                      const ritz_constrained_request *how,
+                      const ritz_constrained_facts *facts)
+{
+    const ritz_stabilisation *method = how->method;
+
+    sink_object(run, "constraints");
+    sink_field(run, "constraints", "method,rows,rank",
+               "%s, %ld rows of rank %ld", method->name, facts->num_rows,
+               facts->rank);
+    say_redundant(run, bodies, facts);
+    for (int k = 0; k < RITZ_MOST_GAINS && method->gain[k].name; k++)
+        sink_field(run, method->gain[k].name, method->gain[k].name, "%.6g %s",
+                   facts->gain[k], method->gain[k].unit);
+    sink_field(run, "highest", "highest_hz,joined_hz",
+               "%.6g Hz, of the joined bodies %.6g Hz", facts->highest_hz,
+               facts->joined_hz);
+    sink_field(run, "a step", "step_cost,step_limit",
+               "%.3g s of processor time; explicit ones are stable below %.4g "
+               "s",
+               facts->step_cost, facts->step_limit);
+    sink_end(run);
+}
+
+static ritz_status refuse_options(const simulation_task *task)
+{
+    RITZ_REFUSE_IF(task->stage.count == 0, RITZ_ERR_ARGUMENT,
+                   "'%s' is no scene: --constraints joins bodies that are not "
+                   "joined yet",
+                   task->run->operand[0]);
+    RITZ_REFUSE_IF(task->given->model.damper.count > 0, RITZ_ERR_ARGUMENT,
+                   "--damper is of the joined system: give the value in the "
+                   "scene");
+    return RITZ_OK;
+}
+
+ritz_status simulation_constrained(simulation_task *task,
+                                   const ritz_simulation_request *request,
+                                   ritz_simulation *out)
+{
+    const simulation_options *given = task->given;
+    ritz_simulation_request asked = *request;
+    ritz_constrained_request how = {0};
+    RITZ_OWN(ritz_unjoined) bodies = {0};
+    RITZ_OWN(ritz_constrained_facts) facts = {0};
+    RITZ_OWN(ritz_simulation) s = {0};
+    RITZ_OWN_ARRAY double *x0 = NULL, *v0 = NULL;
+
+    RITZ_CHECK_IN("--constraints",
+                  ritz_constrained_parse(given->constraints, &how));
+    how.any_step = given->any_step;
+    RITZ_CHECK(refuse_options(task));
+    RITZ_CHECK(ritz_stage_unjoined(&task->stage, task->setting, task->m.at,
+                                   &task->m.damping, &bodies));
+    RITZ_CHECK(find_start(given, &bodies, task->x0, &x0));
+    RITZ_CHECK(find_start(given, &bodies, task->v0, &v0));
+    asked.x0 = x0;
+    asked.v0 = v0;
+    RITZ_CHECK(ritz_simulate_constrained(&bodies, &how, &asked, &facts, &s));
+    ritz_damping_print(&task->m.damping, s.damping);
+    if (s.num_state == 0)
+        say_facts(task->run, &bodies, &how, &facts);
+    RITZ_MOVE(*out, s);
+    return RITZ_OK;
+}
