@@ -48,8 +48,13 @@ static const cli_program program = {
 
 int main(int argc, char **argv)
 {
-    simulation_options given = {
-        .method = "modal", .hold = "first", .rho = 0.8, .every = 1};
+    simulation_options given = {.method = "modal",
+                                .hold = "first",
+                                .rho = 0.8,
+                                .every = 1,
+                                .indicator = 0.99,
+                                .inner = "mass",
+                                .jump = "offset"};
     const cli_option options[] = {
         CLI_TEXT("method", &given.method, "NAME", "integrator, one of --list"),
         CLI_REAL("seconds", &given.seconds, "T", 1e-12, 1e12,
@@ -89,6 +94,26 @@ int main(int argc, char **argv)
         CLI_FLAG("any-step", &given.any_step,
                  "with --constraints, accept a step that is not stable, to see "
                  "it fail"),
+        CLI_TEXT("switched", &given.switched, "LIBRARY[,LIBRARY]",
+                 "reduced models switched in time: bases, matrices of any "
+                 "foreign file, or modes[:K]"),
+        CLI_REAL("switch-interval", &given.switch_interval, "T", 1e-12, 1e12,
+                 "seconds from one switch to the next, whole steps"),
+        CLI_REAL("indicator", &given.indicator, "E", 1e-6, 1.0 - 1e-9,
+                 "vectors are added until their share of the residual is "
+                 "above E"),
+        CLI_WORD("inner", &given.inner, "mass|euclidean",
+                 "product in which vectors are orthogonal and shares are "
+                 "measured"),
+        CLI_WORD("jump", &given.jump, "offset|project",
+                 "what lies beside the set at a switch stays as it was, or is "
+                 "lost"),
+        CLI_REAL("hysteresis", &given.hysteresis, "H", 0.0, 0.99,
+                 "a vector that is used counts 1 + H times"),
+        CLI_REAL("dwell", &given.dwell, "T", 0.0, 1e12,
+                 "seconds that a set is kept at least [one interval]"),
+        CLI_FLAG("redundant", &given.redundant,
+                 "vectors of the library may depend on each other"),
         CLI_FLAG("cost", &given.cost,
                  "report what a simulated second costs, by each integrator"),
         CLI_PAIR("band-hz", given.band_hz, "F,F",

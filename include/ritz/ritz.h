@@ -24,6 +24,7 @@
 #include <ritz/simulate.h>
 #include <ritz/state_space.h>
 #include <ritz/subspace.h>
+#include <ritz/switched.h>
 #include <ritz/system.h>
 #include <ritz/tuning.h>
 #include <ritz/verify.h>

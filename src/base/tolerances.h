@@ -1035,4 +1035,17 @@
    factor of 2e10 takes two thirds of the time. */
 #define RITZ_FACTOR_ALONE 4e9
 
+/* Switched models */
+
+/* Shares of a residual, or a share and Emin, closer than this are a tie: each
+   is a sum of squares of some thousand coordinates. */
+#define RITZ_SWITCH_TIE 1e-12
+/* A vector of length one of which less than this is new beside others that
+   were chosen gives no direction: eight digits of it would be rounding. */
+#define RITZ_SWITCH_NEW 1e-8
+/* A vector is an eigenvector of M, D or K if it is off by no more than this:
+   iterated modes are good to the root of their residuals, 1e-16. What energy
+   the rest can raise is below |D| times this a second. */
+#define RITZ_COMMUTES 1e-8
+
 #endif

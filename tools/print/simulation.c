@@ -159,6 +159,7 @@ static void simulation_task_free(simulation_task *d)
 {
     RITZ_FREE_EACH(ritz_signal, d->io.num_inputs, d->signal);
     RITZ_FREE(d->x0, d->v0, d->setting);
+    RITZ_FREE_EACH(ritz_dense, d->num_libraries, d->library);
     model_free(&d->m);
     ritz_stage_free(&d->stage);
     ritz_scene_free(&d->scene);
@@ -264,6 +265,8 @@ static ritz_status simulate_response(simulation_task *d)
     RITZ_REFUSE_IF(kind && given->step == 0.0, RITZ_ERR_ARGUMENT,
                    "%s needs --step: no step is chosen by an accuracy",
                    kind->option);
+    if (kind && kind->prepare)
+        RITZ_CHECK_IN(kind->option, kind->prepare(d));
     RITZ_CHECK(simulation_long_run(d, &request,
                                    kind ? kind->simulate : simulate_model, s));
     RITZ_CHECK(describe_output(run, &made));

@@ -22,6 +22,8 @@ typedef struct simulation_task {
     ritz_signal *signal;   /* of each input */
     double *x0, *v0;       /* of the subject; NULL: at rest */
     ritz_accuracy reached; /* of a run whose step was chosen by it */
+    int64_t num_libraries; /* of --switched */
+    ritz_dense *library;
 } simulation_task;
 
 /** One run of a task: of one linear model, or of a kind. */
@@ -34,6 +36,8 @@ typedef struct simulation_kind {
     const char *option; /* that asks for it, "--switched" */
     bool (*asked)(const simulation_options *given);
     simulation_function *simulate;
+    /** Read the files that options name, once before all runs; NULL: none. */
+    ritz_status (*prepare)(simulation_task *task);
 } simulation_kind;
 
 /** All of them, ended by an empty one. */
@@ -54,6 +58,11 @@ ritz_status simulation_long_run(simulation_task *task,
                                 ritz_simulation_request *request,
                                 simulation_function *simulate,
                                 ritz_simulation *out);
+
+/* Switched reduced models. */
+bool simulation_switched_asked(const simulation_options *given);
+ritz_status simulation_switched_prepare(simulation_task *task);
+simulation_function simulation_switched;
 
 /** Say what each integrator costs at the step that it needs. */
 ritz_status simulation_say_costs(simulation_task *d, const double band_hz[2]);

@@ -8,6 +8,12 @@ static bool has_constraints(const simulation_options *given)
 }
 
 const simulation_kind simulation_kinds[] = {
-    {"--constraints", has_constraints, simulation_constrained},
+    {.option = "--constraints",
+     .asked = has_constraints,
+     .simulate = simulation_constrained},
+    {.option = "--switched",
+     .asked = simulation_switched_asked,
+     .simulate = simulation_switched,
+     .prepare = simulation_switched_prepare},
     {0},
 };

@@ -1,0 +1,658 @@
+/*
+ * A switched model over time. With U the present set in coordinates of the
+ * library, orthonormal, and X the modes of U'K U,
+ *
+ *     q = q_0 + U X p,   w = w_0 + U X p',   U'q_0 = U'w_0 = 0 held,
+ *
+ *     p'' + X'U'D U X p' + Lambda p = X'U'(B u - K q_0 - D w_0)
+ *
+ * which `modal` propagates exactly; the load of what is held is constant. Of
+ * work and damping,
+ *
+ *     d/dt (w'w + q'K q)/2 = p''X'U'B u - p''X'U'D U X p' - p''X'U'D w_0,
+ *
+ * the inner model has the first two and the work of the load, whose integral
+ * is its product with the change of p.
+ */
+#include "simulate/switched.h"
+
+#include "base/alloc.h"
+#include "base/tolerances.h"
+#include "linear/general.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+/* What diagnostics tell, in their order, and the largest size of R so far. All
+   are memory of the march. */
+enum {
+    VECTORS,
+    INDICATOR,
+    LEADING,
+    VECTOR_STEPS,
+    SWITCHES,
+    FALLBACKS,
+    JUMP_X,
+    JUMP_V,
+    LOST,
+    GAINED,
+    NUM_DIAGNOSTICS,
+    LARGEST = NUM_DIAGNOSTICS,
+    LAST_SWITCH, /* step at which the set changed last */
+    NUM_TOLD,
+};
+
+static const char *const diagnostics[] = {
+    "vectors",
+    "indicator",
+    "leading vector",
+    "vector-steps",
+    "switches",
+    "fallbacks",
+    "jump of displacement",
+    "jump of velocity",
+    "energy lost at switches",
+    "energy gained at switches",
+};
+
+/* The model of the present set. */
+typedef struct set_model {
+    bool made;
+    ritz_motion motion; /* p; the last input is what is held */
+    ritz_march march;
+    int64_t *at;   /* of modes of a library that is orthonormal: their numbers,
+                    UX is then not needed; NULL */
+    ritz_dense UX; /* span x r */
+    double *damped_hold; /* r: X'U'D w_0 */
+} set_model;
+
+typedef struct switching {
+    const ritz_library *library;
+    const ritz_switched *switched;
+    int64_t steps_between, steps_kept; /* of interval and dwell */
+    set_model set;
+    ritz_choosing choosing;
+    ritz_residue residue;
+    double *told, *q_0, *w_0, *p, *v; /* within memory */
+    double *memory;
+    double *u0, *u1;      /* inputs and 1 */
+    ritz_dense Ca;        /* outputs x n, of accelerations */
+    double *acceleration; /* n */
+} switching;
+
+static void set_model_free(set_model *set)
+{
+    ritz_march_free(&set->march);
+    ritz_motion_free(&set->motion);
+    ritz_dense_free(&set->UX);
+    RITZ_FREE(set->at, set->damped_hold);
+    *set = (set_model){0};
+}
+
+static void release_switching(void *own)
+{
+    switching *s = own;
+
+    set_model_free(&s->set);
+    ritz_dense_free(&s->choosing.rest);
+    ritz_dense_free(&s->Ca);
+    RITZ_FREE(s->choosing.next, s->choosing.share, s->residue.x, s->residue.v,
+              s->residue.whole, s->memory, s->u0, s->u1, s->acceleration, s);
+}
+
+/* out = X'U'y of the span's part of y. */
+static void restrict_to_set(const set_model *set, const double *y, double *out)
+{
+    const int64_t r = set->motion.n;
+
+    for (int64_t i = 0; i < r; i++)
+        out[i] = set->at ? y[set->at[i]]
+                         : ritz_motion_dot(set->UX.nrow,
+                                           ritz_dense_col(&set->UX, i), y);
+}
+
+/* x = x_0 + U X p */
+static void expand_set(const set_model *set, const double *x_0, const double *p,
+                       int64_t n, double *x)
+{
+    if (set->at) {
+        for (int64_t i = 0; i < set->motion.n; i++)
+            x[set->at[i]] = p[i]; /* x_0 is 0 there, and held elsewhere */
+        return;
+    }
+    memcpy(x, x_0, (size_t)n * sizeof *x);
+    ritz_motion_gemv(&set->UX, 1.0, p, x);
+}
+
+/* Whether a matrix of some vectors is diagonal. */
+static bool is_diagonal(const ritz_dense *A)
+{
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t i = 0; i < A->nrow; i++)
+            if (i != j && ritz_dense_col(A, j)[i] != 0.0)
+                return false;
+    return true;
+}
+
+/* Modes of a library are their own: `at`, Lambda and D by their numbers. */
+static ritz_status take_modes(const switching *s, set_model *set, bool *taken)
+{
+    const ritz_library *library = s->library;
+    int64_t r = 0;
+    RITZ_OWN(ritz_dense) K = {0};
+    RITZ_OWN_ARRAY int64_t *at = NULL;
+
+    *taken = false;
+    if (library->redundant)
+        return RITZ_OK;
+    RITZ_CHECK_NEW(at, library->span);
+    for (int64_t k = 0; k < library->num_vectors; k++)
+        if (s->choosing.present[k] != 0.0)
+            at[r++] = k;
+    RITZ_CHECK(ritz_dense_principal(&library->K, r, at, &K));
+    if (!is_diagonal(&K))
+        return RITZ_OK;
+    set->motion.n = r;
+    RITZ_CHECK_NEW(set->motion.lambda, r);
+    for (int64_t k = 0; k < r; k++)
+        set->motion.lambda[k] = ritz_dense_col(&K, k)[k];
+    RITZ_CHECK(ritz_dense_principal(&library->D, r, at, &set->motion.D));
+    RITZ_MOVE(set->at, at);
+    *taken = true;
+    return RITZ_OK;
+}
+
+/* Modes of U'K U. */
+static ritz_status find_modes(const switching *s, set_model *set)
+{
+    const ritz_library *library = s->library;
+    const int64_t n = library->span;
+    RITZ_OWN(ritz_dense) U = {0}, part = {0}, K = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
+
+    RITZ_CHECK(ritz_library_columns(library, s->choosing.present, &U));
+    RITZ_CHECK(ritz_dense_block(&library->K, 0, n, 0, n, &part));
+    RITZ_CHECK(ritz_dense_congruence(&part, &U, &K));
+    RITZ_CHECK(ritz_general_symmetric(&K, &pairs));
+    RITZ_CHECK(ritz_dense_mul(&U, &pairs.Phi, &set->UX));
+    set->motion.n = U.ncol;
+    RITZ_MOVE(set->motion.lambda, pairs.lambda);
+    ritz_dense_free(&part);
+    RITZ_CHECK(ritz_dense_block(&library->D, 0, n, 0, n, &part));
+    return ritz_dense_project(&part, &set->UX, &set->motion.D);
+}
+
+/* [X'U'B, -X'U'(K q_0 + D w_0)], and the damping of what is held. */
+static ritz_status fill_inputs(const switching *s, set_model *set)
+{
+    const ritz_library *library = s->library;
+    const int64_t m = library->B.ncol, r = set->motion.n;
+    RITZ_OWN_ARRAY double *held = NULL;
+
+    RITZ_CHECK_NEW(held, library->n);
+    RITZ_CHECK_NEW(set->damped_hold, r);
+    RITZ_CHECK(ritz_dense_new(r, m + 1, &set->motion.B));
+    for (int64_t j = 0; j < m; j++)
+        restrict_to_set(set, ritz_dense_col(&library->B, j),
+                        ritz_dense_col(&set->motion.B, j));
+    ritz_motion_gemv(&library->D, 1.0, s->w_0, held);
+    restrict_to_set(set, held, set->damped_hold);
+    ritz_motion_gemv(&library->K, 1.0, s->q_0, held);
+    restrict_to_set(set, held, ritz_dense_col(&set->motion.B, m));
+    for (int64_t i = 0; i < r; i++) {
+        double *load = &ritz_dense_col(&set->motion.B, m)[i];
+
+        *load = -*load - set->damped_hold[i];
+    }
+    return RITZ_OK;
+}
+
+/* The model of the set that `present` names: its vectors, before what is held
+   is known. */
+static ritz_status find_set(const switching *s, set_model *set)
+{
+    bool taken = false;
+
+    RITZ_CHECK(take_modes(s, set, &taken));
+    return taken ? RITZ_OK : find_modes(s, set);
+}
+
+static ritz_status finish_set(ritz_march *march, switching *s)
+{
+    set_model *set = &s->set;
+
+    RITZ_CHECK(fill_inputs(s, set));
+    set->motion.form = RITZ_FORM_MODAL;
+    set->motion.energies = march->motion->energies;
+    RITZ_CHECK(ritz_march_new(&set->motion, &ritz_integrator_modal, march->step,
+                              0.0, &set->march));
+    memcpy(set->march.x, s->p, (size_t)set->motion.n * sizeof *s->p);
+    memcpy(set->march.v, s->v, (size_t)set->motion.n * sizeof *s->v);
+    set->made = true;
+    return RITZ_OK;
+}
+
+/* y_0 = y - U X (X'U'y), X'U'y to be p. */
+static void hold_rest(const set_model *set, int64_t n, const double *y,
+                      double *y_0, double *p)
+{
+    memcpy(y_0, y, (size_t)n * sizeof *y);
+    restrict_to_set(set, y, p);
+    if (!set->at) {
+        for (int64_t i = 0; i < set->motion.n; i++)
+            for (int64_t k = 0; k < set->UX.nrow; k++)
+                y_0[k] -= ritz_dense_col(&set->UX, i)[k] * p[i];
+        return;
+    }
+    for (int64_t i = 0; i < set->motion.n; i++)
+        y_0[set->at[i]] = 0.0;
+}
+
+/* What is held is lost: the jump, and what energy it takes. */
+static void project_state(ritz_march *march, switching *s)
+{
+    const int64_t n = s->library->n;
+    const size_t size = (size_t)n * sizeof(double);
+    double before[2] = {0.0}, after[2] = {0.0}, change = 0.0;
+
+    s->told[JUMP_X] = sqrt(ritz_motion_dot(n, s->q_0, s->q_0));
+    s->told[JUMP_V] = sqrt(ritz_motion_dot(n, s->w_0, s->w_0));
+    ritz_march_energy(march, &before[0], &before[1]);
+    for (int64_t k = 0; k < n; k++) {
+        march->x[k] -= s->q_0[k];
+        march->v[k] -= s->w_0[k];
+    }
+    memset(s->q_0, 0, size);
+    memset(s->w_0, 0, size);
+    ritz_march_energy(march, &after[0], &after[1]);
+    change = after[0] + after[1] - before[0] - before[1];
+    s->told[LOST] += fmax(-change, 0.0);
+    s->told[GAINED] += fmax(change, 0.0);
+    march->dissipated -= change;
+}
+
+static int64_t count_present(const switching *s)
+{
+    int64_t count = 0;
+
+    for (int64_t k = 0; k < s->library->num_vectors; k++)
+        count += s->choosing.present[k] != 0.0;
+    return count;
+}
+
+/* The set that was chosen becomes the present one. */
+static ritz_status change_set(ritz_march *march, switching *s)
+{
+    const ritz_library *library = s->library;
+
+    memcpy(s->choosing.present, s->choosing.next,
+           (size_t)library->num_vectors * sizeof(double));
+    set_model_free(&s->set);
+    RITZ_CHECK(find_set(s, &s->set));
+    hold_rest(&s->set, library->n, march->x, s->q_0, s->p);
+    hold_rest(&s->set, library->n, march->v, s->w_0, s->v);
+    if (s->switched->jump == RITZ_SWITCH_PROJECT)
+        project_state(march, s);
+    s->told[SWITCHES] += 1.0;
+    s->told[LAST_SWITCH] = (double)march->steps;
+    s->told[VECTORS] = (double)count_present(s);
+    return finish_set(march, s);
+}
+
+/* Whether R at the start of a step, or where that is rounding, at its end,
+   tells anything. */
+static bool find_residue(const ritz_march *march, switching *s,
+                         const double *u0, const double *u1)
+{
+    const double *const u[] = {u0, u1};
+
+    for (int k = 0; k < 2; k++) {
+        ritz_residue_find(s->library, march->x, march->v, u[k], &s->residue);
+        s->told[LARGEST] = fmax(s->told[LARGEST], s->residue.largest);
+        if (sqrt(s->residue.square) > RITZ_SUM_ROUNDING * s->told[LARGEST])
+            return true;
+    }
+    return false;
+}
+
+static ritz_status switch_set(ritz_march *march, switching *s, const double *u0,
+                              const double *u1)
+{
+    ritz_choosing *c = &s->choosing;
+    const double since = (double)march->steps - s->told[LAST_SWITCH];
+    const bool kept = s->set.made && since < (double)s->steps_kept;
+    const size_t size = (size_t)s->library->num_vectors * sizeof(double);
+
+    s->told[JUMP_X] = s->told[JUMP_V] = 0.0;
+    if (!find_residue(march, s, u0, u1))
+        return RITZ_OK;
+    if (kept) {
+        s->told[INDICATOR] = ritz_present_indicator(s->library, &s->residue, c);
+        return RITZ_OK;
+    }
+    ritz_choose_vectors(s->library, s->switched, &s->residue, c);
+    s->told[INDICATOR] = c->indicator;
+    s->told[LEADING] = (double)(c->leading + 1);
+    s->told[FALLBACKS] += c->fallback ? 1.0 : 0.0;
+    if (s->set.made && memcmp(c->next, c->present, size) == 0)
+        return RITZ_OK;
+    return change_set(march, s);
+}
+
+/* One step of the set, and what it gives and takes. */
+static ritz_status advance_set(ritz_march *march, switching *s)
+{
+    set_model *set = &s->set;
+    ritz_march *inner = &set->march;
+    const int64_t r = set->motion.n, n = s->library->n;
+    const double *load = ritz_dense_col(&set->motion.B, s->library->B.ncol);
+
+    inner->work = inner->dissipated = 0.0;
+    RITZ_CHECK(inner->advance(inner, s->u0, s->u1));
+    inner->steps++;
+    march->work += inner->work;
+    march->dissipated += inner->dissipated;
+    for (int64_t i = 0; i < r; i++) {
+        const double moved = inner->x[i] - s->p[i];
+
+        march->work -= load[i] * moved;
+        march->dissipated += set->damped_hold[i] * moved;
+    }
+    memcpy(s->p, inner->x, (size_t)r * sizeof *s->p);
+    memcpy(s->v, inner->v, (size_t)r * sizeof *s->v);
+    expand_set(set, s->q_0, s->p, n, march->x);
+    expand_set(set, s->w_0, s->v, n, march->v);
+    s->told[VECTOR_STEPS] += (double)r;
+    return RITZ_OK;
+}
+
+static ritz_status advance_switched(ritz_march *march, const double *u0,
+                                    const double *u1)
+{
+    switching *s = march->own;
+    const int64_t m = s->library->B.ncol;
+
+    if (!s->set.made && s->told[SWITCHES] > 0.0) { /* the run was continued */
+        RITZ_CHECK(find_set(s, &s->set));
+        RITZ_CHECK(finish_set(march, s));
+    }
+    if (march->steps % s->steps_between == 0)
+        RITZ_CHECK(switch_set(march, s, u0, u1));
+    if (!s->set.made)
+        return RITZ_OK; /* nothing moves yet */
+    for (int64_t j = 0; j < m; j++) {
+        s->u0[j] = u0[j];
+        s->u1[j] = u1[j];
+    }
+    return advance_set(march, s);
+}
+
+/* Coordinates are orthonormal in M. */
+static void find_energy(const ritz_march *march, double *kinetic,
+                        double *potential)
+{
+    const ritz_motion *m = march->motion;
+
+    *kinetic = 0.5 * ritz_motion_dot(m->n, march->v, march->v);
+    *potential = 0.5 * ritz_motion_form(&m->K, march->x);
+}
+
+static void diagnose(const ritz_march *march, double *out)
+{
+    const switching *s = march->own;
+
+    memcpy(out, s->told, NUM_DIAGNOSTICS * sizeof *out);
+}
+
+/* Accelerations of the set: what is held has none. */
+static void find_acceleration(const switching *s, const double *u, double *a)
+{
+    const set_model *set = &s->set;
+    const int64_t r = set->made ? set->motion.n : 0, m = s->library->B.ncol;
+
+    memset(a, 0, (size_t)s->library->n * sizeof *a);
+    for (int64_t i = 0; i < r; i++) {
+        double sum = ritz_dense_col(&set->motion.B, m)[i] -
+                     set->motion.lambda[i] * s->p[i];
+
+        for (int64_t j = 0; j < m; j++)
+            sum += ritz_dense_col(&set->motion.B, j)[i] * u[j];
+        for (int64_t j = 0; j < r; j++)
+            sum -= ritz_dense_col(&set->motion.D, j)[i] * s->v[j];
+        if (set->at)
+            a[set->at[i]] = sum;
+        else
+            for (int64_t k = 0; k < set->UX.nrow; k++)
+                a[k] += ritz_dense_col(&set->UX, i)[k] * sum;
+    }
+}
+
+static void find_outputs(const ritz_march *march, const double *u, double *y)
+{
+    const ritz_motion *m = march->motion;
+    switching *s = march->own;
+
+    memset(y, 0, (size_t)m->C.nrow * sizeof *y);
+    ritz_motion_gemv(&m->C, 1.0, march->x, y);
+    ritz_motion_gemv(&m->Cv, 1.0, march->v, y);
+    find_acceleration(s, u, s->acceleration);
+    ritz_motion_gemv(&s->Ca, 1.0, s->acceleration, y);
+}
+
+/* The library as a motion: its matrices, and what drives and observes them. */
+static ritz_status fill_motion(const ritz_library *library, const ritz_io *io,
+                               ritz_motion *m)
+{
+    m->form = RITZ_FORM_DENSE;
+    m->n = library->n;
+    m->original = library->Phi.nrow;
+    m->highest = nan("");
+    m->energies = true;
+    RITZ_CHECK(ritz_dense_copy(&library->K, &m->K));
+    RITZ_CHECK(ritz_dense_copy(&library->B, &m->B));
+    RITZ_CHECK(ritz_dense_copy(&library->B, &m->push));
+    RITZ_CHECK(ritz_dense_copy(&library->MPhi, &m->to));
+    RITZ_CHECK(ritz_dense_mul(&io->C, &library->Phi, &m->C));
+    RITZ_CHECK(ritz_dense_mul(&io->Cv, &library->Phi, &m->Cv));
+    return ritz_dense_new(io->num_outputs, io->num_inputs, &m->feed);
+}
+
+/* Numbers that the march names as its memory, and where they are. */
+static ritz_status make_memory(const ritz_library *library, switching *s,
+                               ritz_march *march)
+{
+    const int64_t parts[] = {NUM_TOLD,   library->num_vectors, library->n,
+                             library->n, library->span,        library->span};
+    double **const places[] = {
+        &s->told, &s->choosing.present, &s->q_0, &s->w_0, &s->p, &s->v};
+    const size_t count = sizeof parts / sizeof *parts;
+    int64_t at = 0;
+
+    for (size_t k = 0; k < count; k++)
+        march->num_memory += parts[k];
+    RITZ_CHECK_NEW(s->memory, march->num_memory);
+    for (size_t k = 0; k < count; at += parts[k++])
+        *places[k] = s->memory + at;
+    march->memory = s->memory;
+    return RITZ_OK;
+}
+
+static ritz_status make_room(const ritz_library *library, switching *s)
+{
+    RITZ_CHECK_NEW(s->choosing.next, library->num_vectors);
+    RITZ_CHECK_NEW(s->choosing.share, library->num_vectors);
+    if (library->redundant)
+        RITZ_CHECK(ritz_dense_copy(&library->vector, &s->choosing.rest));
+    RITZ_CHECK_NEW(s->residue.x, library->span);
+    RITZ_CHECK_NEW(s->residue.v, library->span);
+    RITZ_CHECK_NEW(s->residue.whole, library->S_x.nrow);
+    RITZ_CHECK_NEW(s->acceleration, library->n);
+    RITZ_CHECK_NEW(s->u0, library->B.ncol + 1);
+    RITZ_CHECK_NEW(s->u1, library->B.ncol + 1);
+    s->u0[library->B.ncol] = s->u1[library->B.ncol] = 1.0;
+    return RITZ_OK;
+}
+
+/* The largest |value| that a signal has. */
+static double largest_value(const ritz_signal *signal)
+{
+    double largest = 1.0;
+
+    if (signal->kind == RITZ_SIGNAL_ZERO || signal->kind == RITZ_SIGNAL_IMPULSE)
+        return 0.0;
+    if (signal->kind == RITZ_SIGNAL_TABLE) {
+        largest = 0.0;
+        for (int64_t k = 0; k < signal->count; k++)
+            largest = fmax(largest, fabs(signal->value[k]));
+    }
+    return largest * fabs(signal->amplitude);
+}
+
+/* What R of the inputs can be: a residual far below it is rounding. */
+static double largest_force(const ritz_library *library,
+                            const ritz_simulation_request *request)
+{
+    const int64_t rows = library->S_b.nrow;
+    double sum = 0.0;
+
+    for (int64_t j = 0; request->signal && j < library->S_b.ncol; j++) {
+        const double *b = ritz_dense_col(&library->S_b, j);
+
+        sum += largest_value(&request->signal[j]) *
+               sqrt(ritz_motion_dot(rows, b, b));
+    }
+    return sum;
+}
+
+/* Whole steps of a time; @p exact: it must be some. */
+static ritz_status count_steps(double seconds, double step, bool exact,
+                               int64_t *out)
+{
+    const double ratio = seconds / step;
+
+    RITZ_REFUSE_IF(!(ratio >= 0.0) || ratio > RITZ_MOST_STEPS,
+                   RITZ_ERR_ARGUMENT, "%g s is no time between switches",
+                   seconds);
+    *out = (int64_t)(exact ? round(ratio) : ceil(ratio - RITZ_STEP_ROUNDING));
+    RITZ_REFUSE_IF(exact && (*out < 1 || fabs(ratio - (double)*out) >
+                                             RITZ_SAME * (double)*out),
+                   RITZ_ERR_ARGUMENT,
+                   "the switch interval of %g s is not of whole steps of %g s",
+                   seconds, step);
+    return RITZ_OK;
+}
+
+static ritz_status start_march(const ritz_library *library,
+                               const ritz_switched *switched,
+                               const ritz_simulation_request *request,
+                               const ritz_io *io, ritz_march *march)
+{
+    const ritz_motion *motion = march->motion;
+    switching *s = NULL;
+
+    RITZ_CHECK_NEW(march->x, motion->n);
+    RITZ_CHECK_NEW(march->v, motion->n);
+    RITZ_CHECK_NEW(s, 1);
+    march->own = s;
+    march->free = release_switching;
+    march->step = request->step;
+    s->library = library;
+    s->switched = switched;
+    RITZ_CHECK(count_steps(switched->interval, request->step, true,
+                           &s->steps_between));
+    RITZ_CHECK(
+        count_steps(switched->dwell, request->step, false, &s->steps_kept));
+    RITZ_CHECK(make_memory(library, s, march));
+    RITZ_CHECK(make_room(library, s));
+    RITZ_CHECK(ritz_dense_mul(&io->Ca, &library->Phi, &s->Ca));
+    s->told[LARGEST] = largest_force(library, request);
+    march->advance = advance_switched;
+    march->outputs = find_outputs;
+    march->energy = find_energy;
+    march->diagnose = diagnose;
+    march->diagnostic = diagnostics;
+    march->num_diagnostics = NUM_DIAGNOSTICS;
+    return RITZ_OK;
+}
+
+static ritz_status check_request(ritz_model subject,
+                                 const ritz_simulation_request *request,
+                                 const ritz_switched *switched)
+{
+    RITZ_REFUSE_IF(subject.kind != RITZ_MODEL_COMPONENT &&
+                       subject.kind != RITZ_MODEL_DENSE,
+                   RITZ_ERR_ARGUMENT,
+                   "a state space has no mass and stiffness to switch vectors "
+                   "of");
+    RITZ_REFUSE_IF(subject.kind == RITZ_MODEL_COMPONENT && subject.damping &&
+                       subject.damping->kind != RITZ_DAMPING_NONE &&
+                       !ritz_damping_is_rayleigh(subject.damping),
+                   RITZ_ERR_ARGUMENT,
+                   "damping ratios of a component are of modes that are not "
+                   "known: give rayleigh damping, or reduce it by 'full' "
+                   "first");
+    RITZ_REFUSE_IF(request->coordinates, RITZ_ERR_ARGUMENT,
+                   "coordinates of a switched model are not stored");
+    RITZ_REFUSE_IF(
+        !(switched->least > 0.0) || !(switched->least < 1.0), RITZ_ERR_ARGUMENT,
+        "an indicator is above 0 and below 1, not %g", switched->least);
+    RITZ_REFUSE_IF(
+        !(switched->hysteresis >= 0.0) || !(switched->hysteresis < 1.0),
+        RITZ_ERR_ARGUMENT, "a hysteresis is 0 or above, and below 1, not %g",
+        switched->hysteresis);
+    RITZ_REFUSE_IF(switched->inner == RITZ_SWITCH_EUCLIDEAN &&
+                       switched->jump == RITZ_SWITCH_PROJECT,
+                   RITZ_ERR_ARGUMENT,
+                   "projection is in the inner product of the mass, not "
+                   "Euclidean");
+    return RITZ_OK;
+}
+
+static void fill_report(const ritz_march *march, const ritz_library *library,
+                        ritz_switched_report *report)
+{
+    const switching *s = march->own;
+
+    report->num_switches = (int64_t)s->told[SWITCHES];
+    report->num_fallbacks = (int64_t)s->told[FALLBACKS];
+    report->vector_steps = s->told[VECTOR_STEPS];
+    report->outside = library->outside;
+}
+
+/* Names the run; its sets are propagated by `modal`. */
+static const ritz_integrator switched_name = {.name = "switched"};
+
+ritz_status ritz_simulate_switched(ritz_model subject,
+                                   const ritz_simulation_request *request,
+                                   const ritz_switched *switched,
+                                   ritz_switched_report *report,
+                                   ritz_simulation *out)
+{
+    ritz_simulation_request asked = *request;
+    ritz_switched_report unwanted = {0};
+    ritz_switched_report *found = report ? report : &unwanted;
+    RITZ_OWN(ritz_motion) full = {0}, motion = {0};
+    RITZ_OWN(ritz_library) library = {0};
+    RITZ_OWN(ritz_march) march = {.motion = &motion};
+    RITZ_OWN(ritz_simulation) s = {0};
+    const ritz_io io = ritz_model_io(subject);
+
+    *found = (ritz_switched_report){0};
+    for (int64_t k = 0; k < switched->num_libraries; k++)
+        found->num_given += switched->library[k].ncol;
+    RITZ_CHECK(check_request(subject, request, switched));
+    asked.integrator = &ritz_integrator_trapezoidal; /* the full matrices */
+    RITZ_CHECK(ritz_motion_new(subject, &asked, &full));
+    RITZ_CHECK(ritz_library_new(request, switched, &full, &library));
+    found->num_vectors = library.num_vectors;
+    RITZ_CHECK_IN("--switched", ritz_library_stable(&library, switched, found));
+    RITZ_CHECK(fill_motion(&library, &io, &motion));
+    RITZ_CHECK(start_march(&library, switched, request, &io, &march));
+    asked.integrator = &switched_name;
+    RITZ_CHECK(ritz_march_run(&march, &asked, NULL, &s));
+    RITZ_CHECK(ritz_simulation_label(subject, &s));
+    fill_report(&march, &library, found);
+    RITZ_MOVE(*out, s);
+    return RITZ_OK;
+}

@@ -1,0 +1,84 @@
+/* The parts of switched models: the library, its stability, the choice of a
+   set, and the march. */
+#ifndef RITZ_SIMULATE_SWITCHED_H
+#define RITZ_SIMULATE_SWITCHED_H
+
+#include "simulate/motion.h"
+
+#include <ritz/switched.h>
+
+/*
+ * A library and the full model in its coordinates: x = Phi q, x' = Phi w,
+ * Phi'M Phi = I. The first `span` columns span the candidates; those behind
+ * them hold what of the initial state and of impulses lies beside, and never
+ * move.
+ *
+ *     R = [S_x w;  S_k q + S_d w + S_b u]
+ *
+ * are the coordinates of R in a basis that is orthonormal in W, so that |R| is
+ * found without loss of digits.
+ */
+typedef struct ritz_library {
+    int64_t num_vectors;  /* L, candidates */
+    int64_t n, span;      /* columns of Phi */
+    ritz_dense Phi, MPhi; /* full rows x n */
+    ritz_dense vector;    /* span x L: directions of candidates in V = Phi
+                              diag(1 / scale), orthonormal in W */
+    double *scale;        /* n: 1, or 1/sqrt(mu) where W = I */
+    bool redundant;       /* else `vector` is the identity */
+    ritz_dense K, D, B;   /* Phi'K Phi, Phi'D Phi, Phi'B */
+    ritz_dense S_x, S_k, S_d, S_b;
+    double outside; /* share of the initial state beside the library */
+} ritz_library;
+
+ritz_status ritz_library_new(const ritz_simulation_request *request,
+                             const ritz_switched *switched,
+                             const ritz_motion *full, ritz_library *out);
+void ritz_library_free(ritz_library *library);
+
+/**
+ * Check the condition of stability of ritz_simulate_switched.
+ *
+ * @param[out] report  defect and dwell
+ * @return RITZ_ERR_ARGUMENT
+ */
+ritz_status ritz_library_stable(const ritz_library *library,
+                                const ritz_switched *switched,
+                                ritz_switched_report *report);
+
+/* R at a switch, in the coordinates of a library. */
+typedef struct ritz_residue {
+    double *x, *v;  /* span: V'W of both rows */
+    double *whole;  /* rows of S_x: to work in */
+    double square;  /* |R|^2 */
+    double largest; /* of the terms of R: what it is rounded by */
+} ritz_residue;
+
+void ritz_residue_find(const ritz_library *library, const double *q,
+                       const double *w, const double *u, ritz_residue *r);
+
+/* What is chosen, and what it takes to choose. */
+typedef struct ritz_choosing {
+    double *present; /* L: 1 in the set, else 0 */
+    double *next;    /* L: the set that is chosen */
+    double *share;   /* L */
+    ritz_dense rest; /* of redundant vectors, what is new in them */
+    int64_t leading; /* number of the vector with the largest share, from 0 */
+    double indicator;
+    bool fallback; /* all vectors are below Emin */
+} ritz_choosing;
+
+/** Fill next, leading, indicator, fallback. */
+void ritz_choose_vectors(const ritz_library *library,
+                         const ritz_switched *switched, const ritz_residue *r,
+                         ritz_choosing *c);
+
+/** E of the present set. */
+double ritz_present_indicator(const ritz_library *library,
+                              const ritz_residue *r, ritz_choosing *c);
+
+/** Orthonormal columns of span x r of the vectors in a set. */
+ritz_status ritz_library_columns(const ritz_library *library,
+                                 const double *present, ritz_dense *U);
+
+#endif

@@ -1,0 +1,192 @@
+/*
+ * Which vectors of a library carry the motion from a switch on: in the order of
+ * their shares of |R|^2, until E > Emin [McDaniel2000, 5.2.12-14].
+ *
+ * Of redundant candidates the share of each is that of what is new in it beside
+ * those that were chosen before, so that shares add up to E.
+ *
+ * No decision hangs on rounding: shares that agree to twelve digits are a tie,
+ * which goes to a vector of the present set, and among those to the lowest
+ * number; E within rounding of Emin keeps a present vector and adds no other.
+ */
+#include "simulate/switched.h"
+
+#include "base/tolerances.h"
+
+#include <math.h>
+#include <string.h>
+
+/* out += A x of the first rows and columns, scaled. */
+static double whole_size(const ritz_dense *A, const double *x, double *whole)
+{
+    memset(whole, 0, (size_t)A->nrow * sizeof *whole);
+    ritz_motion_gemv(A, 1.0, x, whole);
+    return sqrt(ritz_motion_dot(A->nrow, whole, whole));
+}
+
+void ritz_residue_find(const ritz_library *library, const double *q,
+                       const double *w, const double *u, ritz_residue *r)
+{
+    const int64_t rows = library->S_x.nrow;
+    const double moved = whole_size(&library->S_x, w, r->whole);
+    const double terms[] = {whole_size(&library->S_k, q, r->whole),
+                            whole_size(&library->S_d, w, r->whole),
+                            whole_size(&library->S_b, u, r->whole)};
+    double force = 0.0;
+
+    ritz_motion_gemv(&library->S_k, 1.0, q, r->whole);
+    ritz_motion_gemv(&library->S_d, 1.0, w, r->whole);
+    force = ritz_motion_dot(rows, r->whole, r->whole);
+    r->square = moved * moved + force;
+    r->largest = fmax(moved, terms[0] + terms[1] + terms[2]);
+    for (int64_t i = 0; i < library->span; i++) {
+        double sum = 0.0;
+
+        for (int64_t j = 0; j < library->B.ncol; j++)
+            sum += ritz_dense_col(&library->B, j)[i] * u[j];
+        for (int64_t j = 0; j < library->n; j++)
+            sum -= ritz_dense_col(&library->K, j)[i] * q[j] +
+                   ritz_dense_col(&library->D, j)[i] * w[j];
+        r->v[i] = library->scale[i] * sum;
+        r->x[i] = library->scale[i] * w[i];
+    }
+}
+
+static double share_of(const ritz_residue *r, int64_t n, const double *psi,
+                       double size)
+{
+    const double x = ritz_motion_dot(n, psi, r->x) / size;
+    const double v = ritz_motion_dot(n, psi, r->v) / size;
+
+    return (x * x + v * v) / r->square;
+}
+
+/* Shares of all that are not chosen; 0 of what has nothing new. */
+static void find_shares(const ritz_library *library, const ritz_residue *r,
+                        ritz_choosing *c)
+{
+    const int64_t n = library->span;
+
+    for (int64_t k = 0; k < library->num_vectors; k++) {
+        if (!library->redundant) {
+            c->share[k] = (r->x[k] * r->x[k] + r->v[k] * r->v[k]) / r->square;
+            continue;
+        }
+        const double *psi = ritz_dense_col(&c->rest, k);
+        const double size = sqrt(ritz_motion_dot(n, psi, psi));
+
+        c->share[k] = size > RITZ_SWITCH_NEW ? share_of(r, n, psi, size) : -1.0;
+    }
+}
+
+/* Take what is chosen out of all others. */
+static void deflate(const ritz_library *library, int64_t chosen,
+                    ritz_choosing *c)
+{
+    const int64_t n = library->span;
+    const double *psi = ritz_dense_col(&c->rest, chosen);
+    const double square = ritz_motion_dot(n, psi, psi);
+
+    for (int64_t k = 0; k < library->num_vectors; k++) {
+        double *other = ritz_dense_col(&c->rest, k);
+        const double part =
+            k == chosen ? 0.0 : ritz_motion_dot(n, psi, other) / square;
+
+        for (int64_t i = 0; i < n; i++)
+            other[i] -= part * psi[i];
+    }
+    for (int64_t i = 0; i < n; i++)
+        ritz_dense_col(&c->rest, chosen)[i] = 0.0;
+}
+
+/* The best of those that are left; -1: none is. */
+static int64_t find_best(const ritz_library *library,
+                         const ritz_switched *switched, const ritz_choosing *c)
+{
+    int64_t best = -1;
+    double most = -1.0;
+
+    for (int64_t k = 0; k < library->num_vectors; k++) {
+        const double favour =
+            c->present[k] != 0.0 ? 1.0 + switched->hysteresis : 1.0;
+
+        if (c->next[k] == 0.0 && c->share[k] >= 0.0)
+            most = fmax(most, favour * c->share[k]);
+    }
+    for (int64_t k = 0; k < library->num_vectors; k++) {
+        const bool present = c->present[k] != 0.0;
+        const double favour = present ? 1.0 + switched->hysteresis : 1.0;
+
+        if (c->next[k] != 0.0 || c->share[k] < 0.0 ||
+            favour * c->share[k] < most - RITZ_SWITCH_TIE)
+            continue;
+        if (best < 0 || (present && c->present[best] == 0.0))
+            best = k;
+    }
+    return best;
+}
+
+/* Whether E is enough, so that the next vector is not needed. */
+static bool is_enough(const ritz_switched *switched, double E, bool present)
+{
+    const double room = 1.0 - switched->least;
+
+    if (!present)
+        return E > switched->least - RITZ_SWITCH_TIE;
+    return E >
+           switched->least + fmax(RITZ_SWITCH_TIE, switched->hysteresis * room);
+}
+
+void ritz_choose_vectors(const ritz_library *library,
+                         const ritz_switched *switched, const ritz_residue *r,
+                         ritz_choosing *c)
+{
+    const size_t size = (size_t)library->num_vectors * sizeof(double);
+
+    memset(c->next, 0, size);
+    if (library->redundant)
+        memcpy(c->rest.val, library->vector.val, (size_t)library->span * size);
+    c->leading = -1;
+    c->indicator = 0.0;
+    c->fallback = false;
+    find_shares(library, r, c);
+    while (true) {
+        const int64_t best = find_best(library, switched, c);
+
+        if (best >= 0 && c->leading >= 0 &&
+            is_enough(switched, c->indicator, c->present[best] != 0.0))
+            return;
+        if (best < 0)
+            break;
+        if (c->leading < 0)
+            c->leading = best;
+        c->next[best] = 1.0;
+        c->indicator += c->share[best];
+        if (library->redundant) {
+            deflate(library, best, c);
+            find_shares(library, r, c);
+        }
+    }
+    c->fallback = !is_enough(switched, c->indicator, false);
+}
+
+double ritz_present_indicator(const ritz_library *library,
+                              const ritz_residue *r, ritz_choosing *c)
+{
+    double sum = 0.0;
+
+    if (library->redundant)
+        memcpy(c->rest.val, library->vector.val,
+               (size_t)(library->span * library->num_vectors) * sizeof(double));
+    find_shares(library, r, c);
+    for (int64_t k = 0; k < library->num_vectors; k++) {
+        if (c->present[k] == 0.0 || c->share[k] < 0.0)
+            continue;
+        sum += c->share[k];
+        if (library->redundant) {
+            deflate(library, k, c);
+            find_shares(library, r, c);
+        }
+    }
+    return sum;
+}

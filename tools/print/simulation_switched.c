@@ -1,0 +1,175 @@
+/* Switched models: --switched LIBRARY[,LIBRARY]. */
+#include "print/simulation.h"
+
+#include "base/alloc.h"
+#include "base/text.h"
+
+#include <ritz/import.h>
+#include <ritz/switched.h>
+
+#include <inttypes.h>
+#include <string.h>
+
+enum { MOST_LIBRARIES = 16 };
+
+bool simulation_switched_asked(const simulation_options *given)
+{
+    return given->switched != NULL;
+}
+
+/* "modes" or "modes:K": the lowest of the model itself; NULL: it is a file. */
+static const char *find_modes_word(const char *text)
+{
+    static const char word[] = "modes";
+    const size_t length = sizeof word - 1;
+
+    if (strncmp(text, word, length) != 0 ||
+        (text[length] != '\0' && text[length] != ':'))
+        return NULL;
+    return text + length;
+}
+
+static ritz_status take_modes(const simulation_task *task, const char *count,
+                              ritz_dense *out)
+{
+    const ritz_model *s = &task->subject;
+    const int64_t n = ritz_model_order(*s);
+    RITZ_OWN(ritz_pairs) pairs = {0};
+    int64_t modes = n;
+
+    RITZ_REFUSE_IF(*count && (!ritz_text_whole(count + 1, &modes) || modes < 1),
+                   RITZ_ERR_ARGUMENT, "'modes%s' is no number of modes", count);
+    if (s->kind == RITZ_MODEL_COMPONENT) {
+        const ritz_span span = {.modes = modes < n ? modes : n - 1};
+        RITZ_OWN(ritz_dense) K = {0}, M = {0};
+
+        if (modes < n)
+            RITZ_CHECK(ritz_eigen_sparse(&s->component->K, &s->component->M,
+                                         &span, &pairs));
+        else {
+            RITZ_CHECK(ritz_sparse_dense(&s->component->K, &K));
+            RITZ_CHECK(ritz_sparse_dense(&s->component->M, &M));
+            RITZ_CHECK(ritz_eigen_dense(&K, &M, &pairs));
+        }
+    } else if (s->kind == RITZ_MODEL_DENSE) {
+        RITZ_CHECK(ritz_eigen_dense(s->dense.K, s->dense.M, &pairs));
+    }
+    return ritz_dense_columns(
+        &pairs.Phi, 0, modes < pairs.Phi.ncol ? modes : pairs.Phi.ncol, out);
+}
+
+/* A basis that Ritz made, or a matrix in any foreign file. */
+static ritz_status read_library(cli_run *run, const char *path, ritz_dense *out)
+{
+    RITZ_OWN(ritz_matrix) T = {0};
+    RITZ_OWN_ARRAY char *file = NULL;
+    const ritz_wanted wanted = {.spec = path, .into = &T};
+
+    if (ritz_container_seems(path)) {
+        RITZ_OWN(model) m = {0};
+
+        RITZ_CHECK(model_read(run, path, MODEL_BASIS, &m));
+        RITZ_REFUSE_IF(m.basis.states, RITZ_ERR_ARGUMENT,
+                       "'%s' is a basis of states, not of displacements", path);
+        RITZ_MOVE(*out, m.basis.T);
+        return RITZ_OK;
+    }
+    RITZ_CHECK(ritz_foreign_path(path, &file));
+    RITZ_CHECK(cli_input(run, file));
+    RITZ_CHECK(ritz_foreign_collect(1, &wanted, NULL));
+    RITZ_REFUSE_IF(T.imaginary, RITZ_ERR_ARGUMENT, "'%s' is complex", path);
+    return ritz_sparse_dense(&T.A, out);
+}
+
+static ritz_status take_library(simulation_task *task, const char *word)
+{
+    const char *count = find_modes_word(word);
+    ritz_dense *out = &task->library[task->num_libraries];
+
+    RITZ_REFUSE_IF(task->num_libraries == MOST_LIBRARIES, RITZ_ERR_ARGUMENT,
+                   "more than %d libraries", (int)MOST_LIBRARIES);
+    RITZ_REFUSE_IF(!*word, RITZ_ERR_ARGUMENT, "a library without a name");
+    RITZ_CHECK(count ? take_modes(task, count, out)
+                     : read_library(task->run, word, out));
+    task->num_libraries++;
+    return RITZ_OK;
+}
+
+ritz_status simulation_switched_prepare(simulation_task *task)
+{
+    RITZ_OWN_ARRAY char *text = strdup(task->given->switched);
+    char *rest = text;
+
+    if (!text)
+        return RITZ_ERR_MEMORY;
+    RITZ_CHECK_NEW(task->library, MOST_LIBRARIES);
+    while (rest) {
+        char *comma = strchr(rest, ',');
+
+        if (comma)
+            *comma = '\0';
+        RITZ_CHECK(take_library(task, rest));
+        rest = comma ? comma + 1 : NULL;
+    }
+    return RITZ_OK;
+}
+
+static void say_report(cli_run *run, const ritz_switched *asked,
+                       const ritz_switched_report *r, const ritz_simulation *s)
+{
+    const double steps = s->seconds[s->count - 1] / s->step;
+
+    sink_field(run, "library", "vectors,given",
+               "%" PRId64 " vectors of %" PRId64 " given", r->num_vectors,
+               r->num_given);
+    sink_field(run, "switches", "switches,fallbacks",
+               "%" PRId64 " changes of the set; %" PRId64
+               " times all vectors were below the indicator",
+               r->num_switches, r->num_fallbacks);
+    sink_field(run, "vector-steps", "vector_steps,mean_vectors",
+               "%.0f, %.4g vectors a step", r->vector_steps,
+               r->vector_steps / steps);
+    if (r->dwell > 0.0)
+        sink_field(run, "stable", "dwell,needed",
+                   "sets dwell %.4g s, and %.4g s are needed", asked->dwell,
+                   r->dwell);
+    else
+        sink_field(run, "stable", "defect",
+                   "the energy is a common Lyapunov function of all sets, "
+                   "which the library meets to %.1e",
+                   r->defect);
+    if (r->outside > 0.0)
+        cli_warn(run,
+                 "%.2g of the initial state lies beside the library, and is "
+                 "lost",
+                 r->outside);
+}
+
+ritz_status simulation_switched(simulation_task *task,
+                                const ritz_simulation_request *request,
+                                ritz_simulation *out)
+{
+    const simulation_options *given = task->given;
+    const bool euclidean = strcmp(given->inner, "euclidean") == 0;
+    const bool project = strcmp(given->jump, "project") == 0;
+    const ritz_switched asked = {
+        .num_libraries = task->num_libraries,
+        .library = task->library,
+        .redundant = given->redundant,
+        .interval = given->switch_interval,
+        .least = given->indicator,
+        .hysteresis = given->hysteresis,
+        .inner = euclidean ? RITZ_SWITCH_EUCLIDEAN : RITZ_SWITCH_MASS,
+        .jump = project ? RITZ_SWITCH_PROJECT : RITZ_SWITCH_OFFSET,
+        .dwell = given->dwell,
+    };
+    ritz_switched_report report = {0};
+
+    RITZ_REFUSE_IF(!(given->switch_interval > 0.0), RITZ_ERR_ARGUMENT,
+                   "--switched needs --switch-interval");
+    RITZ_CHECK(
+        ritz_simulate_switched(task->subject, request, &asked, &report, out));
+    if (out->num_state == 0)
+        say_report(task->run, &asked, &report, out);
+    return RITZ_OK;
+}
