@@ -33,6 +33,7 @@ const ritz_exporter ritz_exporter_container = {
     .summary = "container of Ritz, which every tool reads",
     .reference = "HDFGroup2016",
     .kind = "reduced",
-    .takes = RITZ_EXPORT_REDUCED | RITZ_EXPORT_STATES | RITZ_EXPORT_ROWS,
+    .takes = RITZ_EXPORT_REDUCED | RITZ_EXPORT_STATES | RITZ_EXPORT_ROWS |
+             RITZ_EXPORT_LOADS,
     .write = write_container,
 };

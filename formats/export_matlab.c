@@ -34,6 +34,19 @@ static ritz_status put_columns(ritz_mat_sheet *s, const ritz_columns *columns)
     return ritz_mat_put_real(s, "hertz", columns->count, 1, columns->hertz);
 }
 
+/* Names of loads: KG1 is of the first of them. */
+static ritz_status put_loads(ritz_mat_sheet *s, const ritz_reduced *reduced)
+{
+    RITZ_OWN_ARRAY char(*load)[RITZ_NAME_SIZE] = NULL;
+
+    if (reduced->num_loads == 0)
+        return RITZ_OK;
+    RITZ_CHECK_NEW(load, reduced->num_loads);
+    for (int64_t k = 0; k < reduced->num_loads; k++)
+        memcpy(load[k], reduced->load[k].name, sizeof *load);
+    return ritz_mat_put_names(s, "load_names", reduced->num_loads, load);
+}
+
 /* What a reduced component has in addition to its matrices. */
 static ritz_status put_reduced(ritz_mat_sheet *s, const ritz_reduced *reduced)
 {
@@ -43,6 +56,7 @@ static ritz_status put_reduced(ritz_mat_sheet *s, const ritz_reduced *reduced)
     RITZ_CHECK(
         ritz_mat_put_names(s, "output_names", io->num_outputs, io->output));
     RITZ_CHECK(put_limits(s, io->num_outputs, io->limit));
+    RITZ_CHECK(put_loads(s, reduced));
     RITZ_CHECK(put_columns(s, &reduced->columns));
     RITZ_CHECK(ritz_mat_put_text(s, "damping", reduced->damping));
     return ritz_mat_put_text(s, "units", reduced->units);
@@ -68,8 +82,9 @@ static ritz_status fill_sheet(const ritz_export_object *object,
     RITZ_OWN_ARRAY char *certificate = NULL;
 
     /* all but T, which may be large */
-    RITZ_CHECK(ritz_export_matrices(
-        object, request, reduced ? "K,M,D,K4,B,C,Cv,Ca" : NULL, report, &list));
+    RITZ_CHECK(ritz_export_matrices(object, request,
+                                    reduced ? "K,M,D,K4,KG,B,C,Cv,Ca" : NULL,
+                                    report, &list));
     RITZ_CHECK(ritz_export_say_rest(object, request, &list, report));
     RITZ_CHECK(ritz_export_say(report, "numbers keep every bit; inertia and "
                                        "ports are left out"));
@@ -113,6 +128,7 @@ const ritz_exporter ritz_exporter_matlab = {
     .summary = "matrices and names as a MAT file, level 5",
     .reference = "MathWorks2019",
     .kind = "reduced",
-    .takes = RITZ_EXPORT_REDUCED | RITZ_EXPORT_STATES | RITZ_EXPORT_MATRICES,
+    .takes = RITZ_EXPORT_REDUCED | RITZ_EXPORT_STATES | RITZ_EXPORT_MATRICES |
+             RITZ_EXPORT_LOADS,
     .write = write_sheet,
 };

@@ -1,12 +1,22 @@
 /*
- * Writes a body for the modal joint of MBDyn: a text file .fem of 13 record
- * groups [MBDyn2017], as release 1.5.3 and later read it. Written are the
- * groups
+ * Writes a body for the modal joint of MBDyn: a text file .fem of record groups
+ * [MBDyn2017], as release 1.5.3 and later read it. Written are the groups
  *
  *      1  counts            2  labels of nodes     5, 6, 7  their x, y, z
  *      8  modes: three translations and three rotations of each node
  *      9  modal mass       10  modal stiffness    13  modal damping
  *     11  masses of nodes
+ *     19  stress stiffening, if terms of it are named [MBDyn2024]
+ *
+ * Group 19 is how many matrices follow, and of each its tag and its rows: K0 of
+ *
+ *     1 to 6    w_x^2 w_y^2 w_z^2 w_x w_y, w_y w_z, w_z w_x
+ *     7 to 9    angular accelerations     10 to 12  accelerations less gravity
+ *     12 + 6 (i - 1) + c   force (c 1 to 3) or moment (4 to 6) on the body at
+ *                          interface node i of the joint
+ *
+ * each of the frame and along its axes: K0 times that is added to the modal
+ * stiffness. Releases up to 1.7.3 stop at group 19.
  *
  * MBDyn computes the invariants of inertia as sums over the masses of group 11,
  * positions and modes. Masses at grids cannot give the invariants of a
@@ -26,6 +36,7 @@
 #include "formats/floating_report.h"
 #include "formats/point_masses.h"
 #include "formats/sink.h"
+#include "formats/stiffening.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -39,6 +50,7 @@ static const char point_label[] = "inertia";
 typedef struct fem_file {
     ritz_floating body;
     ritz_point_masses points;
+    ritz_stiffening stiffening;
     char *certificate;
 } fem_file;
 
@@ -46,6 +58,7 @@ static void fem_file_free(fem_file *fem)
 {
     ritz_floating_free(&fem->body);
     ritz_point_masses_free(&fem->points);
+    ritz_stiffening_free(&fem->stiffening);
     free(fem->certificate);
 }
 
@@ -126,15 +139,46 @@ static void print_modes(FILE *file, const fem_file *fem)
 }
 
 /* MBDyn reads matrices by rows. */
+static void print_rows(FILE *file, const ritz_dense *A)
+{
+    for (int64_t i = 0; i < A->nrow; i++)
+        for (int64_t j = 0; j < A->ncol; j++)
+            put_number(file, j, A->ncol, ritz_dense_col(A, j)[i]);
+}
+
 static void print_matrix(FILE *file, int group, const char *title,
                          const ritz_dense *A)
 {
     if (!A->val)
         return;
     open_group(file, group, title);
-    for (int64_t i = 0; i < A->nrow; i++)
-        for (int64_t j = 0; j < A->ncol; j++)
-            put_number(file, j, A->ncol, ritz_dense_col(A, j)[i]);
+    print_rows(file, A);
+}
+
+/* Tag of a term in group 19. */
+static int64_t find_tag(const ritz_stiffening *s,
+                        const ritz_stiffening_term *term)
+{
+    int64_t node = 0;
+
+    if (term->kind < RITZ_FORCE)
+        return term->kind + 1;
+    while (s->grid[node] != term->grid)
+        node++;
+    return RITZ_FORCE + 6 * node + (term->kind - RITZ_FORCE) + 1;
+}
+
+/* No comment may be within the group. */
+static void print_stiffening(FILE *file, const ritz_stiffening *s)
+{
+    if (s->count == 0)
+        return;
+    open_group(file, 19, "MODAL STRESS STIFFENING MATRICES");
+    fprintf(file, "%" PRId64 "\n", s->count);
+    for (int64_t k = 0; k < s->count; k++) {
+        fprintf(file, "%" PRId64 "\n", find_tag(s, &s->term[k]));
+        print_rows(file, &s->term[k].K0);
+    }
 }
 
 static void print_masses(FILE *file, const fem_file *fem)
@@ -161,6 +205,7 @@ static ritz_status print_file(FILE *file, const void *what)
     print_matrix(file, 10, "MODAL STIFFNESS MATRIX", &fem->body.K);
     print_masses(file, fem);
     print_matrix(file, 13, "MODAL DAMPING MATRIX", &fem->body.D);
+    print_stiffening(file, &fem->stiffening);
     fputs("**\n** END OF FILE\n", file);
     return RITZ_OK;
 }
@@ -201,9 +246,38 @@ static ritz_status say_rotations(const ritz_floating *body,
         without, body->count);
 }
 
+/* What group 19 asks of the joint. */
+static ritz_status say_stiffening(const ritz_reduced *reduced,
+                                  const ritz_stiffening *s,
+                                  ritz_export_report *report)
+{
+    char grids[128] = "";
+    size_t used = 0;
+
+    RITZ_CHECK(ritz_stiffening_say(reduced, s, report));
+    if (s->count == 0)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_export_say(
+        report, "record group 19 is for MBDyn after 1.7.3, which takes it with "
+                "'use automatic differentiation' in its control data"));
+    for (int64_t k = 0; k < s->num_grids && used < sizeof grids; k++)
+        used += (size_t)snprintf(grids + used, sizeof grids - used,
+                                 "%s%" PRId64, k > 0 ? ", " : "", s->grid[k]);
+    RITZ_REFUSE_IF(used >= sizeof grids, RITZ_ERR_ARGUMENT,
+                   "forces and moments are of too many grids");
+    if (s->num_grids == 0)
+        return RITZ_OK;
+    return ritz_export_say(report,
+                           "its forces and moments count interface nodes: "
+                           "those of the joint must begin with grids %s, in "
+                           "this order",
+                           grids);
+}
+
 static ritz_status say_losses(const ritz_reduced *reduced, const fem_file *fem,
                               ritz_export_report *report)
 {
+    RITZ_CHECK(say_stiffening(reduced, &fem->stiffening, report));
     RITZ_CHECK(say_points(&fem->points, report));
     RITZ_CHECK(say_rotations(&fem->body, report));
     RITZ_CHECK(ritz_floating_say_damping(reduced, &fem->body, report));
@@ -227,6 +301,8 @@ static ritz_status write_body(const ritz_export_object *object,
     RITZ_CHECK(ritz_floating_of(object->reduced, &frame, &fem.body));
     RITZ_CHECK(ritz_point_masses_of(&fem.body.inertia, &fem.body.invariants,
                                     &fem.body.M, &fem.points));
+    RITZ_CHECK(ritz_stiffening_of(object->reduced, &fem.body, &fem.body.U,
+                                  request->stiffening, &fem.stiffening));
     RITZ_CHECK(ritz_certificate(object, request->stamp, &fem.certificate));
     RITZ_CHECK(ritz_sink_write(request->output, print_file, &fem));
     RITZ_CHECK(ritz_floating_say(&fem.body, report));
@@ -238,6 +314,6 @@ const ritz_exporter ritz_exporter_mbdyn = {
     .summary = "a body for the modal joint of MBDyn (.fem)",
     .reference = "MBDyn2017",
     .kind = "reduced",
-    .takes = RITZ_EXPORT_REDUCED | RITZ_EXPORT_FRAME,
+    .takes = RITZ_EXPORT_REDUCED | RITZ_EXPORT_FRAME | RITZ_EXPORT_STIFFENING,
     .write = write_body,
 };

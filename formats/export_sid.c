@@ -12,6 +12,16 @@
  *     Me             EMBSlib takes I whatever the file says, so modes are
  *                    scaled to unit modal mass
  *
+ * Geometric stiffness K0 of a unit load adds to first-order terms, so that the
+ * sum over loads of K0 q is added to Ke q: with w_ab the products of Oe,
+ *
+ *     Ct m1(:, k, a)  += K0t_a(:, k)       accelerations less gravity
+ *     Cr m1(:, k, a)  += K0r_a(:, k)       angular accelerations
+ *     Oe m1(:, k, ab) += K0w_ab(:, k)      angular velocities
+ *     phi m1(a, k, :)  = -K0F_a(:, k)'     forces on the node, whose part in
+ *     psi m1(a, k, :)  = -K0M_a(:, k)'     the equations of the modes is
+ *                                          (phi' f), (psi' t)
+ *
  * Entries of diagonal and unit matrices are all written, since some readers
  * ignore the code of the structure. Exponents have a D, the only letter that
  * EMBSlib reads.
@@ -32,7 +42,42 @@ void sid_body_free(sid_body *body)
 {
     ritz_normal_body_free(&body->normal);
     ritz_sid_terms_free(&body->terms);
+    ritz_stiffening_free(&body->stiffening);
     *body = (sid_body){0};
+}
+
+/* m1 += K0 in column @p at of the @p columns of each mode. */
+static ritz_status add_stiffness(const ritz_dense *K0, int64_t columns,
+                                 int64_t at, ritz_taylor *t)
+{
+    const int64_t m = K0->nrow;
+
+    if (!t->m1.val)
+        RITZ_CHECK(ritz_dense_new(m, columns * m, &t->m1));
+    for (int64_t k = 0; k < m; k++)
+        for (int64_t l = 0; l < m; l++)
+            ritz_dense_col(&t->m1, k * columns + at)[l] +=
+                ritz_dense_col(K0, k)[l];
+    return RITZ_OK;
+}
+
+/* Terms of the frame's motion; those of forces are terms of nodes. */
+static ritz_status add_stiffening(sid_body *b)
+{
+    for (int64_t k = 0; k < b->stiffening.count; k++) {
+        const ritz_stiffening_term *term = &b->stiffening.term[k];
+        const int kind = term->kind;
+
+        if (kind < RITZ_TURN)
+            RITZ_CHECK(add_stiffness(&term->K0, 6, kind, &b->terms.Oe));
+        else if (kind < RITZ_ACCEL)
+            RITZ_CHECK(
+                add_stiffness(&term->K0, 3, kind - RITZ_TURN, &b->terms.Cr));
+        else if (kind < RITZ_FORCE)
+            RITZ_CHECK(
+                add_stiffness(&term->K0, 3, kind - RITZ_ACCEL, &b->terms.Ct));
+    }
+    return RITZ_OK;
 }
 
 ritz_status sid_body_of(const ritz_reduced *reduced,
@@ -46,6 +91,9 @@ ritz_status sid_body_of(const ritz_reduced *reduced,
     RITZ_CHECK(ritz_normal_body_of(reduced, &wanted, &b.normal));
     RITZ_CHECK(ritz_dense_identity(b.normal.num_modes, &unit));
     RITZ_CHECK(ritz_sid_terms_of(&b.normal.invariants, &unit, here, &b.terms));
+    RITZ_CHECK(ritz_stiffening_of(reduced, &b.normal.floating, &b.normal.U,
+                                  request->stiffening, &b.stiffening));
+    RITZ_CHECK(add_stiffening(&b));
     RITZ_MOVE(*out, b);
     return RITZ_OK;
 }
@@ -78,6 +126,7 @@ typedef struct sid_text {
     const sid_body *body;
     const char *title; /* text after the counts of the first line */
     double *AP;        /* 3 x 3m, m1 of AP of the node that is written */
+    double *room;      /* 6 (m + m m), for that node */
 } sid_text;
 
 static void put_number(FILE *file, double x)
@@ -169,26 +218,60 @@ static void turn_node(const sid_body *b, int64_t node, double *AP)
     }
 }
 
+/* Rows of a node in columns of 3. */
+static const double *pick_node(const ritz_dense *A, int64_t node, double *out)
+{
+    for (int64_t k = 0; k < A->ncol; k++)
+        memcpy(out + 3 * k, ritz_dense_col(A, k) + 3 * node, 3 * sizeof *out);
+    return out;
+}
+
+/* m1 of phi, or of psi, in columns of 3: of loads of a kind on a node. NULL if
+   there is none. */
+static const double *load_node(const sid_body *b, int64_t id, int first,
+                               double *m1)
+{
+    const ritz_stiffening *s = &b->stiffening;
+    const int64_t m = b->normal.num_modes;
+    bool any = false;
+
+    memset(m1, 0, (size_t)(3 * m * m) * sizeof *m1);
+    for (int64_t n = 0; n < s->count; n++) {
+        const int a = s->term[n].kind - first;
+
+        if (a < 0 || a > 2 || s->term[n].grid != id)
+            continue;
+        any = true;
+        for (int64_t e = 0; e < m * m; e++)
+            m1[3 * e + a] = -s->term[n].K0.val[e];
+    }
+    return any ? m1 : NULL;
+}
+
 static void put_node(const sid_text *t, int64_t node)
 {
     static const double unit[3] = {1.0, 1.0, 1.0};
-    const sid_body *b = t->body;
-    const int64_t m = b->normal.num_modes, step = b->normal.shape.nrow;
-    const double *phi = b->normal.shape.val + 3 * node;
-    const double *place = b->normal.floating.position + 3 * node;
-    const bool turns = b->normal.floating.rotates[node] && b->normal.turn.val;
-    const double *psi = turns ? b->normal.turn.val + 3 * node : NULL;
+    const ritz_normal_body *body = &t->body->normal;
+    const int64_t m = body->num_modes, id = body->floating.id[node];
+    const double *place = body->floating.position + 3 * node;
+    const bool turns = body->floating.rotates[node] && body->turn.val;
+    double *room = t->room;
+    const double *phi = pick_node(&body->shape, node, room);
+    const double *psi =
+        turns ? pick_node(&body->turn, node, room + 3 * m) : NULL;
+    const double *force = load_node(t->body, id, RITZ_FORCE, room + 6 * m);
+    const double *moment =
+        load_node(t->body, id, RITZ_MOMENT, room + 6 * m + 3 * m * m);
     const sid_matrix of_node[] = {
-        {"origin", 1, 3, 1, m, place, phi, step, NULL},
-        {"phi", 0, 3, m, m, phi, NULL, step, NULL},
-        {"psi", 0, 3, m, m, psi, NULL, step, NULL},
+        {"origin", 1, 3, 1, m, place, phi, 3, NULL},
+        {"phi", force != NULL, 3, m, m, phi, force, 3, NULL},
+        {"psi", moment != NULL, 3, m, m, psi, moment, 3, NULL},
         {"AP", 1, 3, 3, m, NULL, turns ? t->AP : NULL, 3, unit},
     };
 
     if (turns)
-        turn_node(b, node, t->AP);
-    fprintf(t->file, "%16s%-32s=%8" PRId64 "\n", "", "new node",
-            b->normal.floating.id[node]);
+        turn_node(t->body, node, t->AP);
+    fprintf(t->file, "%16s%-32s=%8" PRId64 "\n", "", "new node", id);
     fprintf(t->file, "%21s%-27s=    body ref\n", "", "rframe");
     for (size_t k = 0; k < sizeof of_node / sizeof *of_node; k++)
         put_matrix(t->file, 21, &of_node[k]);
@@ -238,7 +321,7 @@ static ritz_status put_terms(FILE *file, const sid_body *b)
     of = (const sid_matrix[]){
         from_taylor("mdCM", &t->mdCM, true, m),
         from_taylor("J", &t->J, true, m),
-        from_taylor("Ct", &t->Ct, false, m),
+        from_taylor("Ct", &t->Ct, t->Ct.m1.val != NULL, m),
         from_taylor("Cr", &t->Cr, true, m),
         {"Me", 0, m, m, m, NULL, NULL, m, unit},
         from_taylor("Gr", &t->Gr, false, m),
@@ -258,11 +341,14 @@ static ritz_status print_file(FILE *file, const void *what)
 {
     sid_text t = *(const sid_text *)what;
     const sid_body *b = t.body;
-    RITZ_OWN_ARRAY double *AP = NULL;
+    const int64_t m = b->normal.num_modes;
+    RITZ_OWN_ARRAY double *AP = NULL, *room = NULL;
 
-    RITZ_CHECK_NEW(AP, 9 * b->normal.num_modes);
+    RITZ_CHECK_NEW(AP, 9 * m);
+    RITZ_CHECK_NEW(room, 6 * (m + m * m));
     t.file = file;
     t.AP = AP;
+    t.room = room;
     fprintf(file, "%5" PRId64 " %3" PRId64 "    :No. nodes, No. modes:%s\n",
             b->normal.floating.count, b->normal.num_modes, t.title);
     fputs(" part\n      new modal                                 =\n", file);
@@ -326,8 +412,9 @@ static ritz_status make_title(const ritz_export_object *object,
     char *lines = NULL;
 
     snprintf(frame, sizeof frame,
-             "reference %s, no geometric stiffening, Ge by modes",
-             ritz_frame_condition_name(b->normal.floating.reference));
+             "reference %s, %s geometric stiffening, Ge by modes",
+             ritz_frame_condition_name(b->normal.floating.reference),
+             b->stiffening.count > 0 ? "with" : "no");
     add_line(t, frame, strlen(frame));
     RITZ_CHECK(ritz_certificate(object, request->stamp, &lines));
     for (int turn = 0; turn < TURNS; turn++)
@@ -344,16 +431,18 @@ static ritz_status make_title(const ritz_export_object *object,
 
 /* ---- exporter ----------------------------------------------------------- */
 
-static ritz_status say_losses(const sid_body *b, const title *t,
-                              ritz_export_report *report)
+static ritz_status say_losses(const ritz_reduced *reduced, const sid_body *b,
+                              const title *t, ritz_export_report *report)
 {
     const ritz_floating *f = &b->normal.floating;
 
     RITZ_CHECK(ritz_export_say(report, "17 digits, which keep every bit"));
+    RITZ_CHECK(ritz_stiffening_say(reduced, &b->stiffening, report));
     RITZ_CHECK(ritz_export_say(
         report,
-        "geometric stiffening, inputs, outputs and ports are left out; Gr and "
-        "Ge do not change with deformation"));
+        "%sinputs, outputs and ports are left out; Gr and Ge do not change "
+        "with deformation",
+        b->stiffening.count > 0 ? "" : "geometric stiffening, "));
     if (t->kept < t->lines)
         RITZ_CHECK(ritz_export_say(
             report,
@@ -381,7 +470,7 @@ static ritz_status write_sid(const ritz_export_object *object,
     RITZ_CHECK(make_title(object, request, &b, &t));
     RITZ_CHECK(ritz_sink_write(request->output, print_file, &text));
     RITZ_CHECK(ritz_normal_body_say(object->reduced, &b.normal, report));
-    return say_losses(&b, &t, report);
+    return say_losses(object->reduced, &b, &t, report);
 }
 
 const ritz_exporter ritz_exporter_sid = {
@@ -389,6 +478,6 @@ const ritz_exporter ritz_exporter_sid = {
     .summary = "a flexible body as Standard Input Data (SIMPACK, EMBSlib)",
     .reference = "Wallrapp1994",
     .kind = "reduced",
-    .takes = RITZ_EXPORT_REDUCED | RITZ_EXPORT_FRAME,
+    .takes = RITZ_EXPORT_REDUCED | RITZ_EXPORT_FRAME | RITZ_EXPORT_STIFFENING,
     .write = write_sid,
 };

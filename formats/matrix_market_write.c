@@ -162,6 +162,7 @@ const ritz_exporter ritz_exporter_matrix_market = {
     .summary = "Matrix Market text: one matrix, or -o NAME-%.mtx for all",
     .reference = "BoisvertPozoRemington1996",
     .kind = "reduced",
-    .takes = RITZ_EXPORT_REDUCED | RITZ_EXPORT_STATES | RITZ_EXPORT_MATRICES,
+    .takes = RITZ_EXPORT_REDUCED | RITZ_EXPORT_STATES | RITZ_EXPORT_MATRICES |
+             RITZ_EXPORT_LOADS,
     .write = write_matrices,
 };

@@ -9,6 +9,7 @@ void ritz_normal_body_free(ritz_normal_body *body)
     ritz_floating_free(&body->floating);
     free(body->hertz);
     free(body->K);
+    ritz_dense_free(&body->U);
     ritz_dense_free(&body->D);
     ritz_dense_free(&body->shape);
     ritz_dense_free(&body->turn);
@@ -28,6 +29,7 @@ static ritz_status turn_modes(const ritz_pairs *pairs, ritz_normal_body *b)
     RITZ_CHECK_NEW(b->hertz, S->ncol);
     for (int64_t k = 0; k < S->ncol; k++)
         b->hertz[k] = ritz_eigen_hertz(b->K[k]);
+    RITZ_CHECK(ritz_dense_mul(&f->U, S, &b->U));
     RITZ_CHECK(ritz_dense_mul(&f->shape, S, &b->shape));
     if (f->turn.val)
         RITZ_CHECK(ritz_dense_mul(&f->turn, S, &b->turn));

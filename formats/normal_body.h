@@ -11,11 +11,12 @@
 #include <ritz/export.h>
 
 typedef struct ritz_normal_body {
-    ritz_floating floating;     /* as requested: nodes, frame, inertia */
-    int64_t num_modes;          /* m, in ascending order of K */
-    double *hertz;              /* m; negative where w^2 < 0 */
-    double *K;                  /* m, the diagonal w^2; M = I */
-    ritz_dense D;               /* m x m; {0}: none */
+    ritz_floating floating; /* as requested: nodes, frame, inertia */
+    int64_t num_modes;      /* m, in ascending order of K */
+    double *hertz;          /* m; negative where w^2 < 0 */
+    double *K;              /* m, the diagonal w^2; M = I */
+    ritz_dense D;           /* m x m; {0}: none */
+    ritz_dense U; /* r x m, coordinates of the reduced component of each mode */
     ritz_dense shape, turn;     /* 3 nodes x m; turn {0}: no node rotates */
     ritz_invariants invariants; /* about the origin of the frame */
 } ritz_normal_body;

@@ -353,6 +353,6 @@ const ritz_exporter ritz_exporter_output4 = {
     .reference = "MSC2014",
     .kind = "reduced",
     .takes = RITZ_EXPORT_REDUCED | RITZ_EXPORT_STATES | RITZ_EXPORT_MATRICES |
-             RITZ_EXPORT_STYLE,
+             RITZ_EXPORT_STYLE | RITZ_EXPORT_LOADS,
     .write = write_matrices,
 };

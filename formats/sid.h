@@ -3,11 +3,13 @@
 #define RITZ_FORMATS_SID_H
 
 #include "formats/normal_body.h"
+#include "formats/stiffening.h"
 #include "model/inertia_terms.h"
 
 typedef struct sid_body {
     ritz_normal_body normal;
-    ritz_sid_terms terms;
+    ritz_sid_terms terms; /* with those of geometric stiffness */
+    ritz_stiffening stiffening;
 } sid_body;
 
 /** Make the contents of the file. @return as ritz_normal_body_of */

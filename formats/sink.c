@@ -114,6 +114,8 @@ ritz_status ritz_export_check(const ritz_exporter *exporter,
          "takes a model whole, without a choice of ports"},
         {request->frame || request->reference, RITZ_EXPORT_FRAME,
          "has no body in a moving frame"},
+        {request->stiffening != NULL, RITZ_EXPORT_STIFFENING,
+         "has no terms of geometric stiffness"},
     };
 
     for (size_t k = 0; k < sizeof option / sizeof *option; k++)
@@ -253,8 +255,8 @@ static const matrix_kind reduced = {
             {0},
         },
     .noun = "reduced component",
-    .all = "K, M, D, K4, T, B, C, Cv and Ca",
-    .usual = "K,M,D,K4",
+    .all = "K, M, D, K4, KG, KG:LOAD, T, B, C, Cv and Ca",
+    .usual = "K,M,D,K4,KG",
 };
 
 static const ritz_dense *dense_of(const void *object, const entry *e)
@@ -328,44 +330,118 @@ static const entry *find_entry(const entry *among, const char *name,
     return NULL;
 }
 
+static ritz_status refuse_twice(const ritz_matrices *list, const char *name)
+{
+    for (int64_t k = 0; k < list->count; k++)
+        RITZ_REFUSE_IF(strcmp(list->matrix[k].name, name) == 0,
+                       RITZ_ERR_ARGUMENT, "'%s' is named twice", name);
+    return RITZ_OK;
+}
+
+/* KG of load k as "KG1", "KG2", ...: names that every format can hold. */
+static ritz_status take_load(const ritz_reduced *r, int64_t k,
+                             ritz_matrices *out)
+{
+    char name[RITZ_NAME_SIZE];
+    const entry load = {.name = name, .symmetric = true};
+
+    snprintf(name, sizeof name, "KG%" PRId64, k + 1);
+    RITZ_CHECK(refuse_twice(out, name));
+    RITZ_CHECK(fill_matrix(&load, &r->load[k].KG, &out->matrix[out->count]));
+    out->count++;
+    return RITZ_OK;
+}
+
+/* "KG", of all loads, or "KG:LOAD". */
+static ritz_status take_loads(const ritz_reduced *r, const char *at,
+                              size_t length, bool asked, ritz_matrices *out)
+{
+    const size_t prefix = strlen("KG:");
+    bool any = false;
+
+    for (int64_t k = 0; k < r->num_loads; k++) {
+        const char *name = r->load[k].name;
+
+        if (length > prefix &&
+            (strlen(name) != length - prefix ||
+             strncmp(name, at + prefix, length - prefix) != 0))
+            continue;
+        any = true;
+        RITZ_CHECK(take_load(r, k, out));
+    }
+    RITZ_REFUSE_IF(asked && !any, RITZ_ERR_ARGUMENT,
+                   "this reduced component has no '%.*s'", (int)length, at);
+    return RITZ_OK;
+}
+
+static bool is_load(const ritz_export_object *of, const char *at, size_t length)
+{
+    return of->reduced && strncmp(at, "KG", 2) == 0 &&
+           (length == 2 || (length > 3 && at[2] == ':'));
+}
+
+/* A matrix of the table, or rows that recover a quantity. */
+static ritz_status take_entry(const matrix_kind *kind,
+                              const ritz_export_object *of, const char *at,
+                              size_t length, bool asked, ritz_matrices *out)
+{
+    const void *object =
+        of->states ? (const void *)of->states : (const void *)of->reduced;
+    const entry *e = find_entry(kind->entry, at, length);
+    const ritz_quantity *rows = e ? NULL : find_quantity(of, at, length);
+    const entry quantity = {.name = rows ? rows->name : NULL};
+    const ritz_dense *A = NULL;
+    const ritz_sparse *sparse = NULL;
+
+    RITZ_REFUSE_IF(!e && !rows, RITZ_ERR_ARGUMENT,
+                   "there is no matrix '%.*s', there are %s, and rows to "
+                   "recover by their names",
+                   (int)length, at, kind->all);
+    e = rows ? &quantity : e;
+    RITZ_CHECK(refuse_twice(out, e->name));
+    A = rows ? &rows->ST : dense_of(object, e);
+    sparse = rows ? NULL : sparse_of(object, e);
+    RITZ_REFUSE_IF(asked && !A->val && !sparse, RITZ_ERR_ARGUMENT,
+                   "this %s has no '%s'", kind->noun, e->name);
+    if (sparse)
+        RITZ_CHECK(copy_matrix(e, sparse, &out->matrix[out->count++]));
+    else if (asked || (A->val && A->nrow > 0 && A->ncol > 0)) {
+        RITZ_CHECK(fill_matrix(e, A, &out->matrix[out->count]));
+        out->count++;
+    }
+    return RITZ_OK;
+}
+
 /* The matrices that `at` lists, with commas between; of usual ones those that
  * the object has. */
 static ritz_status list_matrices(const matrix_kind *kind,
                                  const ritz_export_object *of, const char *at,
                                  bool asked, ritz_matrices *out)
 {
-    const void *object =
-        of->states ? (const void *)of->states : (const void *)of->reduced;
-
     while (*at) {
         size_t length = strcspn(at, ",");
-        const entry *e = find_entry(kind->entry, at, length);
-        const ritz_quantity *rows = e ? NULL : find_quantity(of, at, length);
-        const entry quantity = {.name = rows ? rows->name : NULL};
-        const ritz_dense *A = NULL;
-        const ritz_sparse *sparse = NULL;
 
-        RITZ_REFUSE_IF(!e && !rows, RITZ_ERR_ARGUMENT,
-                       "there is no matrix '%.*s', there are %s, and rows to "
-                       "recover by their names",
-                       (int)length, at, kind->all);
-        e = rows ? &quantity : e;
-        for (int64_t k = 0; k < out->count; k++)
-            RITZ_REFUSE_IF(strcmp(out->matrix[k].name, e->name) == 0,
-                           RITZ_ERR_ARGUMENT, "'%s' is named twice", e->name);
-        A = rows ? &rows->ST : dense_of(object, e);
-        sparse = rows ? NULL : sparse_of(object, e);
-        RITZ_REFUSE_IF(asked && !A->val && !sparse, RITZ_ERR_ARGUMENT,
-                       "this %s has no '%s'", kind->noun, e->name);
-        if (sparse)
-            RITZ_CHECK(copy_matrix(e, sparse, &out->matrix[out->count++]));
-        else if (asked || (A->val && A->nrow > 0 && A->ncol > 0)) {
-            RITZ_CHECK(fill_matrix(e, A, &out->matrix[out->count]));
-            out->count++;
-        }
+        if (is_load(of, at, length))
+            RITZ_CHECK(take_loads(of->reduced, at, length, asked, out));
+        else
+            RITZ_CHECK(take_entry(kind, of, at, length, asked, out));
         at += length + (at[length] != '\0');
     }
     return RITZ_OK;
+}
+
+static ritz_status say_matrix(const ritz_export_object *object,
+                              const ritz_matrix *m, ritz_export_report *report)
+{
+    const ritz_reduced *r = object->reduced;
+    char load[2 * RITZ_NAME_SIZE] = "";
+    const int64_t k =
+        strncmp(m->name, "KG", 2) == 0 ? strtoll(m->name + 2, NULL, 10) : 0;
+
+    if (r && k > 0 && k <= r->num_loads)
+        snprintf(load, sizeof load, ", KG of load '%s'", r->load[k - 1].name);
+    return ritz_export_say(report, "%s  %lld x %lld%s", m->name,
+                           (long long)m->A.nrow, (long long)m->A.ncol, load);
 }
 
 ritz_status ritz_export_matrices(const ritz_export_object *object,
@@ -379,14 +455,13 @@ ritz_status ritz_export_matrices(const ritz_export_object *object,
 
     if (!names)
         names = usual ? usual : kind->usual;
-    RITZ_CHECK_NEW(list.matrix, (int64_t)strlen(names) + 1);
+    RITZ_CHECK_NEW(list.matrix,
+                   (int64_t)strlen(names) + 1 +
+                       (object->reduced ? object->reduced->num_loads : 0));
     RITZ_CHECK(
         list_matrices(kind, object, names, request->matrices != NULL, &list));
     for (int64_t k = 0; k < list.count; k++)
-        RITZ_CHECK(ritz_export_say(report, "%s  %lld x %lld",
-                                   list.matrix[k].name,
-                                   (long long)list.matrix[k].A.nrow,
-                                   (long long)list.matrix[k].A.ncol));
+        RITZ_CHECK(say_matrix(object, &list.matrix[k], report));
     RITZ_MOVE(*out, list);
     return RITZ_OK;
 }
@@ -457,37 +532,4 @@ ritz_status ritz_export_damped(const ritz_export_object *object,
                                    text));
     RITZ_MOVE(*out, list);
     return RITZ_OK;
-}
-
-/* Formats that take names of matrices take those of quantities too, and say
-   themselves what is left out. */
-static ritz_status say_rows(const ritz_exporter *exporter,
-                            const ritz_export_object *object,
-                            ritz_export_report *report)
-{
-    const ritz_reduced *reduced = object->reduced;
-    char names[200] = "";
-
-    if (!reduced || object->shapes || reduced->num_quantities == 0 ||
-        exporter->takes & (RITZ_EXPORT_ROWS | RITZ_EXPORT_MATRICES))
-        return RITZ_OK;
-    for (int64_t k = 0; k < reduced->num_quantities; k++) {
-        const size_t used = strlen(names);
-
-        snprintf(names + used, sizeof names - used, "%s%s", k > 0 ? ", " : "",
-                 reduced->quantity[k].name);
-    }
-    return ritz_export_say(report,
-                           "rows to recover are left out, ritz-recover has "
-                           "them: %s",
-                           names);
-}
-
-ritz_status ritz_export_write(const ritz_exporter *exporter,
-                              const ritz_export_object *object,
-                              const ritz_export_request *request,
-                              ritz_export_report *report)
-{
-    RITZ_CHECK(exporter->write(object, request, report));
-    return say_rows(exporter, object, report);
 }

@@ -57,6 +57,9 @@ ritz_status ritz_sink_check(const ritz_matrix *m);
  * The matrices of a reduced component or state space that the request names,
  * and a line of the report for each.
  *
+ * Geometric stiffness is "KG" of all loads or "KG:LOAD" of one; the matrices are
+ * called KG1, KG2, ... by the number of their load.
+ *
  * @param[in] usual  names with commas between, for a request that names none:
  *                   absent ones are left out; NULL: all but T, inputs, outputs
  * @return RITZ_ERR_ARGUMENT if there is no such matrix

@@ -93,6 +93,10 @@ int main(int argc, char **argv)
         CLI_TEXT("reference", &request->reference, "none|mean-axis|tangent",
                  "what its modes are measured from [none; 42, fxbody, sid: by "
                  "frame]"),
+        CLI_TEXT("stiffening", &request->stiffening, "TERM[=LOAD][,...]",
+                 "geometric stiffness of these loads as terms spin_xx to "
+                 "spin_xz, turn_x, accel_x, force_x@GRID, moment_x@GRID "
+                 "(mbdyn, sid) [none]"),
         CLI_INT("fmi", &request->fmi, "N", 2, 3, "version of FMI (fmu) [3]"),
         MODEL_OPTIONS(&given.model),
         CLI_FLAG("states", &given.states,

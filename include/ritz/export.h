@@ -215,6 +215,9 @@ typedef struct ritz_export_request {
                                 NULL: the usual one of the format */
     const char *reference;   /* of its modes: "none", "mean-axis" or "tangent";
                                 NULL: the usual one of the format */
+    const char *stiffening;  /* of a moving body: terms of geometric stiffness
+                                and their loads, "spin_zz=LOAD,force_x@13=LOAD";
+                                NULL: none */
     int64_t fmi;             /* fmu: version 2 or 3; 0: 3 */
     const char *runtime;     /* fmu: folder of ritz_fmu.so and its licence */
     const ritz_stamp *stamp; /* inputs and commands, for containers and
@@ -253,7 +256,9 @@ enum {
     RITZ_EXPORT_PORTS = 512,
     RITZ_EXPORT_FMI = 1024,
     RITZ_EXPORT_ID = 2048,
-    RITZ_EXPORT_ROWS = 4096, /* rows to recover are written */
+    RITZ_EXPORT_ROWS = 4096,  /* rows to recover are written */
+    RITZ_EXPORT_LOADS = 8192, /* no field: it writes geometric stiffness */
+    RITZ_EXPORT_STIFFENING = 16384,
 };
 
 typedef struct ritz_exporter {
@@ -291,8 +296,8 @@ extern const ritz_exporter ritz_exporter_uff;
 extern const ritz_exporter ritz_exporter_vtu;
 extern const ritz_exporter ritz_exporter_xdmf;
 
-/** Have an exporter write the object. The report names rows to recover that the
- * format has no place for. */
+/** Have an exporter write the object. The report names rows to recover, and
+ * loads with geometric stiffness, that the format has no place for. */
 ritz_status ritz_export_write(const ritz_exporter *exporter,
                               const ritz_export_object *object,
                               const ritz_export_request *request,

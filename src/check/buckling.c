@@ -26,8 +26,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Each step of the search for a count above 0 is by this factor. */
-static const double farther = 4.0;
+enum {
+    FARTHER = 4 /* each step of the search for a count above 0 is so far */
+};
 
 ritz_status ritz_buckling_held_dense(const ritz_dense *K, const ritz_dense *M,
                                      bool *held)
@@ -131,11 +132,11 @@ static ritz_status find_factor(const ritz_sparse *K, const ritz_sparse *KG,
     RITZ_CHECK(count_factors(K, KG, sign * to, &count));
     if (count == 0)
         return RITZ_OK;
-    for (count = 0; from * farther < to;) {
-        RITZ_CHECK(count_factors(K, KG, sign * from * farther, &count));
+    for (count = 0; from * FARTHER < to;) {
+        RITZ_CHECK(count_factors(K, KG, sign * from * FARTHER, &count));
         if (count > 0)
             break;
-        from *= farther;
+        from *= FARTHER;
     }
     return find_beyond(K, KG, sign * from, sign, mu);
 }

@@ -96,7 +96,7 @@ typedef struct ritz_sid_terms {
     double mass;
     ritz_taylor mdCM; /* 3 x 1; m1 3 x m */
     ritz_taylor J;    /* 6 x 1, xx yy zz xy xz yz; m1 6 x m */
-    ritz_taylor Ct;   /* m x 3; m1 {0} */
+    ritz_taylor Ct;   /* m x 3; m1 {0}, which geometric stiffness fills */
     ritz_taylor Cr;   /* m x 3; m1 m x 3m */
     ritz_taylor Me;   /* m x m, M_r; m1 {0} */
     ritz_taylor Gr;   /* 3 x 3m, columns 3 l + b; m1 3 x 3m m */

@@ -22,7 +22,8 @@
 
 enum {
     GRIDS = 4,
-    GROUPS = 14,
+    GROUPS = 20,
+    TERMS = 4,
     NODES = 128,
     MODES = 18,
     LABEL = 32,
@@ -39,6 +40,8 @@ typedef struct fem_data {
     double psi[MODES][NODES][6];
     double M[MODES][MODES], K[MODES][MODES], D[MODES][MODES];
     double mass[NODES][6];
+    int terms, tag[TERMS]; /* of group 19 */
+    double K0[TERMS][MODES][MODES];
 } fem_data;
 
 /* ---- the reader --------------------------------------------------------- */
@@ -126,6 +129,18 @@ static void read_masses(fem_data *f)
     }
 }
 
+/* How many, then the tag and the rows of each, as modal.cc of 2023 reads them. */
+static void read_stiffening(fem_data *f)
+{
+    f->terms = (int)get_number(f);
+    assert_true(f->terms > 0 && f->terms <= TERMS);
+    for (int k = 0; k < f->terms; k++) {
+        f->tag[k] = (int)get_number(f);
+        assert_true(f->tag[k] >= 1);
+        read_square(f, f->K0[k]);
+    }
+}
+
 static void read_group(fem_data *f, long group)
 {
     switch (group) {
@@ -152,6 +167,9 @@ static void read_group(fem_data *f, long group)
         break;
     case 11:
         read_masses(f);
+        break;
+    case 19:
+        read_stiffening(f);
         break;
     default:
         fail_msg("group %ld is not of this exporter", group);
@@ -615,6 +633,112 @@ static void the_lost_energy_is_reported(void **state)
     assert_true(says(&structural, "structural damping left out"));
 }
 
+/* The body with its own K and M as geometric stiffness of two loads, of which
+   a part of the caller's is borrowed. */
+static ritz_reduced with_loads(const ritz_reduced *reduced,
+                               ritz_reduced_load load[2])
+{
+    ritz_reduced loaded = *reduced;
+
+    load[0] = (ritz_reduced_load){"stretch", reduced->K};
+    load[1] = (ritz_reduced_load){"accel_y", reduced->M};
+    loaded.num_loads = 2;
+    loaded.load = load;
+    return loaded;
+}
+
+/* K0 of KG = K is the modal stiffness, and of KG = M the modal mass. Tags are
+   those of ModalAd: w_z^2 is 3, w_z w_x is 6, the acceleration along y is 11, a
+   force along x on the first interface node 13, a moment about z on the second
+   24. */
+static void group_19_holds_stiffening_by_its_tags(void **state)
+{
+    static const struct {
+        const char *text;
+        int tag[2];
+    } rows[] = {
+        {"spin_zz=stretch,accel_y", {3, 11}},
+        {"spin_xz=stretch,turn_x=accel_y", {6, 7}},
+        {"force_x@22=stretch,moment_z@24=accel_y", {13, 24}},
+    };
+    const fixture *s = *state;
+    static fem_data f;
+
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        ritz_reduced_load load[2];
+        const ritz_reduced loaded = with_loads(&s->chain, load);
+        RITZ_OWN(ritz_export_report) report = {0};
+
+        assert_ok(write_model(&loaded,
+                              (ritz_export_request){.stiffening = rows[k].text},
+                              &report));
+        assert_true(says(&report, "use automatic differentiation"));
+        assert_false(says(&report, "is left out: name its term"));
+        assert_true(says(&report, "begin with grids 22, 24") == (k == 2));
+        read_fem(folder_path("body.fem"), &f);
+        assert_true(f.has[19]);
+        assert_int_equal(f.terms, 2);
+        for (int t = 0; t < 2; t++)
+            assert_int_equal(f.tag[t], rows[k].tag[t]);
+        for (int i = 0; i < f.modes; i++)
+            for (int j = 0; j < f.modes; j++) {
+                const double Kii = sqrt(f.K[i][i] * f.K[j][j]);
+
+                assert_near(f.K0[0][i][j], f.K[i][j], 1e-11 * Kii);
+                assert_near(f.K0[1][i][j], f.M[i][j], 1e-12);
+            }
+    }
+}
+
+static void loads_without_a_term_are_named(void **state)
+{
+    const fixture *s = *state;
+    static fem_data f;
+    ritz_reduced_load load[2];
+    const ritz_reduced loaded = with_loads(&s->chain, load);
+    RITZ_OWN(ritz_export_report) report = {0};
+
+    assert_ok(write_model(&loaded, (ritz_export_request){0}, &report));
+    assert_true(says(&report, "load 'stretch' is left out: name its term by "
+                              "--stiffening TERM=stretch"));
+    assert_true(says(&report, "load 'accel_y' is left out"));
+    read_fem(folder_path("body.fem"), &f);
+    assert_false(f.has[19]);
+}
+
+static void terms_that_cannot_be_are_refused(void **state)
+{
+    static const struct {
+        const char *text, *frame, *words;
+    } rows[] = {
+        {"spin_zx=stretch", NULL, "there is no term 'spin_zx'"},
+        {"", NULL, "there is no term ''"},
+        {"spin_zz=strech", NULL, "is 'stretch' meant"},
+        {"spin_zz", NULL, "spin_zz"},
+        {"force_x=stretch", NULL, "forces and moments are of a grid"},
+        {"spin_zz@21=stretch", NULL, "forces and moments are of a grid"},
+        {"force_x@=stretch", NULL, "'force_x@' names no grid"},
+        {"force_x@2a=stretch", NULL, "'force_x@2a' names no grid"},
+        {"force_x@99=stretch", NULL, "there is no grid 99"},
+        {"turn_z=stretch,turn_z=accel_y", NULL, "'turn_z' is named twice"},
+        {"spin_zz=stretch", "23", "export with --frame basic"},
+    };
+    const fixture *s = *state;
+
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        ritz_reduced_load load[2];
+        const ritz_reduced loaded = with_loads(&s->chain, load);
+        RITZ_OWN(ritz_export_report) report = {0};
+
+        assert_fails(
+            write_model(&loaded,
+                        (ritz_export_request){.stiffening = rows[k].text,
+                                              .frame = rows[k].frame},
+                        &report),
+            RITZ_ERR_ARGUMENT, rows[k].words);
+    }
+}
+
 static void assert_refused(const ritz_reduced *reduced, const char *frame,
                            const char *words)
 {
@@ -644,9 +768,13 @@ static void bodies_without_shapes_or_frames_are_refused(void **state)
 
 static ritz_status write_once(const fixture *s)
 {
+    ritz_reduced_load load[2];
+    const ritz_reduced loaded = with_loads(&s->masses, load);
     RITZ_OWN(ritz_export_report) report = {0};
 
-    return write_model(&s->chain, (ritz_export_request){0}, &report);
+    return write_model(
+        &loaded, (ritz_export_request){.stiffening = "spin_zz=stretch,accel_y"},
+        &report);
 }
 
 static void no_allocation_failure_leaks(void **state)
@@ -662,6 +790,9 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(the_certificate_is_in_comments),
     cmocka_unit_test(the_lost_energy_is_reported),
     cmocka_unit_test(bodies_without_shapes_or_frames_are_refused),
+    cmocka_unit_test(group_19_holds_stiffening_by_its_tags),
+    cmocka_unit_test(loads_without_a_term_are_named),
+    cmocka_unit_test(terms_that_cannot_be_are_refused),
     cmocka_unit_test(no_allocation_failure_leaks),
 };
 
