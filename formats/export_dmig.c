@@ -56,6 +56,8 @@ static const dmig_kind kinds[] = {
 /* A matrix before and after rounding. */
 typedef struct dmig_matrix {
     const dmig_kind *kind;
+    char name[16];  /* "KG1", of a load */
+    dmig_kind load; /* of geometric stiffness, where `kind` points to it */
     bool symmetric;
     bool lower;      /* only the lower triangle is written */
     bool lettered;   /* numbers have a D */
@@ -70,7 +72,7 @@ typedef struct dmig_deck {
     const ritz_export_request *request;
     const ritz_export_report *report;
     int64_t count; /* of matrices */
-    dmig_matrix matrix[sizeof kinds / sizeof *kinds];
+    dmig_matrix *matrix;
     ritz_nastran_rows rows;
     char *certificate;
 } dmig_deck;
@@ -82,7 +84,7 @@ static void dmig_deck_free(dmig_deck *deck)
         ritz_dense_free(&deck->matrix[k].rounded);
     }
     ritz_nastran_rows_free(&deck->rows);
-    free(deck->certificate);
+    RITZ_FREE(deck->matrix, deck->certificate);
 }
 
 /* ---- rounding ------------------------------------------------------------ */
@@ -133,15 +135,26 @@ static ritz_status round_matrix(dmig_matrix *m)
 
 /* ---- matrices ------------------------------------------------------------ */
 
+/* Its row of the table, or that of a load. */
+static void find_kind(const char *name, dmig_matrix *m)
+{
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
+        if (strcmp(kinds[k].name, name) == 0)
+            m->kind = &kinds[k];
+    if (m->kind)
+        return;
+    snprintf(m->name, sizeof m->name, "%.15s", name);
+    m->load = (dmig_kind){m->name, m->name, "K2GG", "K2PP"};
+    m->kind = &m->load;
+}
+
 /* Every entry of an exported matrix is stored, column after column. */
 static ritz_status take_matrix(const ritz_matrix *from, bool numbered,
                                dmig_matrix *m)
 {
     const ritz_dense all = {from->A.nrow, from->A.ncol, from->A.val};
 
-    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
-        if (strcmp(kinds[k].name, from->name) == 0)
-            m->kind = &kinds[k];
+    find_kind(from->name, m);
     RITZ_CHECK(ritz_dense_copy(&all, &m->exact));
     m->averaged = ritz_dense_asymmetry(&m->exact);
     m->symmetric = m->averaged <= RITZ_SYMMETRIC;
@@ -163,8 +176,9 @@ static ritz_status take_matrices(const ritz_export_object *object,
 {
     RITZ_OWN(ritz_matrices) list = {0};
 
-    RITZ_CHECK(
-        ritz_export_damped(object, deck->request, "K,M,D,K4", report, &list));
+    RITZ_CHECK(ritz_export_damped(object, deck->request, "K,M,D,K4,KG", report,
+                                  &list));
+    RITZ_CHECK_NEW(deck->matrix, list.count);
     for (int64_t k = 0; k < list.count; k++)
         RITZ_CHECK(take_matrix(&list.matrix[k], deck->request->numbered,
                                &deck->matrix[deck->count++]));
@@ -450,17 +464,27 @@ static void put_column(FILE *file, const dmig_deck *deck, const dmig_matrix *m,
     }
 }
 
+/* Geometric stiffness is added by as much as there is of its load. */
 static void put_commands(FILE *file, const dmig_deck *deck)
 {
-    char text[2 * RITZ_NAME_SIZE];
+    char text[4 * RITZ_NAME_SIZE];
 
     put_comment(file, "case control:");
     for (int64_t k = 0; k < deck->count; k++) {
         const dmig_matrix *m = &deck->matrix[k];
 
+        if (m->kind == &m->load)
+            continue;
         snprintf(text, sizeof text, "  %s = %s",
                  m->lower ? m->kind->symmetric : m->kind->square,
                  m->kind->card);
+        put_comment(file, text);
+    }
+    for (int64_t j = 0; j < deck->reduced->num_loads; j++) {
+        snprintf(text, sizeof text, "KG%" PRId64 " is of a unit of load '%s'%s",
+                 j + 1, deck->reduced->load[j].name,
+                 deck->request->numbered ? ""
+                                         : ": K2GG = KAAX, X*KGn at X of it");
         put_comment(file, text);
     }
 }
@@ -518,6 +542,6 @@ const ritz_exporter ritz_exporter_dmig = {
     .summary = "NASTRAN DMIG cards, with an audit of their digits",
     .reference = "Nastran1986",
     .kind = "reduced",
-    .takes = RITZ_EXPORT_REDUCED | RITZ_EXPORT_NUMBERED,
+    .takes = RITZ_EXPORT_REDUCED | RITZ_EXPORT_NUMBERED | RITZ_EXPORT_LOADS,
     .write = write_deck,
 };
