@@ -1,0 +1,92 @@
+#!/bin/sh
+# Joints of a scene that hold by forces over time instead of elimination.
+# Usage: constrained.sh FOLDER-OF-THE-TOOLS
+. "$(dirname "$0")/tap.sh"
+. "$here/models.sh"
+
+if ! /usr/bin/python3 -s -c 'import h5py, numpy' 2>/dev/null; then
+    echo 'ok 1 - constraints in time # skip h5py or numpy is missing'
+    exit 0
+fi
+
+import_spacecraft --port boom=33
+spacecraft scene 'inputs:' \
+    '  - {name: motor, at: rotor/bearing, component: 6, against: stator/bearing}' \
+    'outputs:' \
+    '  - {name: gyro, at: platform/scan, component: 6}' \
+    '  - {name: tip, at: rotor/boom, component: 3, quantity: velocity}' \
+    '  - {name: shake, at: rotor/boom, component: 1, quantity: acceleration}'
+run="scene.yaml --at clock=90,cone=0 --seconds 0.5 --input motor=sine:3"
+
+# differ A B: largest difference of outputs, relative to the largest of each.
+differ() {
+    /usr/bin/python3 -s - "$@" <<'END'
+import h5py, numpy, sys
+a, b = (h5py.File(name)["y"][:] for name in sys.argv[1:3])
+off = (abs(a - b).max(axis=0) / abs(b).max(axis=0)).max()
+print(off)
+sys.exit(not off < float(sys.argv[3]))
+END
+}
+
+# --- the eliminated system, by the same integrator ----------------------------
+
+expect 0 '' ritz-simulate $run --step 1e-3 --method trapezoidal -q -o same.h5
+for method in none baumgarte sliding-mode projection; do
+    expect 0 '10 rows of rank 10' ritz-simulate $run --step 1e-3 \
+        --constraints $method -o $method.h5
+    # rounding of frequencies up to 1e3 times those of the output
+    works '  is the eliminated system' differ $method.h5 same.h5 1e-9
+done
+expect 0 '' ritz-simulate $run --step 1e-4 --every 10 -q -o exact.h5
+expect 0 'highest' ritz-simulate $run --step 1e-4 --every 10 \
+    --constraints index-2 -o index-2.h5
+works '  of index 2 up to its order' differ index-2.h5 exact.h5 2e-2
+expect 0 'hz             800 Hz' ritz-simulate $run --step 1e-4 --every 10 \
+    --constraints penalty:hz=800 -o penalty.h5
+expect 0 'violation' ritz-info penalty.h5
+expect 0 '' ritz-export --to tsv penalty.h5 -o penalty.tsv
+expect 0 'violation-rate' head -1 penalty.tsv
+json 0 ritz-simulate $run --step 1e-4 --constraints hybrid:hz=200 -o hybrid.h5
+holds '  the highest frequency is told' '
+    j["constraints"]["hz"] == 200 and j["constraints"]["redundant"] == [] and
+    j["constraints"]["highest_hz"] > j["constraints"]["joined_hz"] > 200'
+
+# --- a start of few digits ----------------------------------------------------
+
+# A bending mode, as a file of two digits has it.
+start="scene.yaml --at clock=90,cone=0 --seconds 20 --step 2e-3 --every 100
+    --initial mode:10*0.01 --start-digits 2"
+for method in none baumgarte:alpha=5,beta=5 projection; do
+    expect 0 '' ritz-simulate $start --constraints $method -q -o drift.h5
+    mv drift.h5 "drift-${method%%:*}.h5"
+done
+works '  drifts, fades or is projected' /usr/bin/python3 -s - <<'END'
+import h5py, sys
+def violation(name):
+    with h5py.File(f"drift-{name}.h5") as f:
+        return f["diagnostics/values"][:, 0]
+none, faded, held = map(violation, ("none", "baumgarte", "projection"))
+print(none, faded, held)
+sys.exit(not (none[0] > 1e-10 and abs(none[-1] / none[0] - 1) < 1e-6
+              and faded[0] == none[0] and faded[-1] < 1e-7 * none[0]
+              and max(held[1:]) < 1e-7 * none[0]))
+END
+
+# --- limits -------------------------------------------------------------------
+
+expect 1 'raises the highest frequency from' ritz-simulate $run --step 1e-3 \
+    --method central-difference --constraints baumgarte:beta=2500 -o x.h5
+expect 1 'with this step, constraints have room up to' ritz-simulate $run \
+    --step 1e-3 --method central-difference --constraints penalty:hz=400 -o x.h5
+expect 1 'has left all bounds' ritz-simulate $run --step 1e-3 --any-step \
+    --seconds 5 --method central-difference --constraints penalty:hz=400 -o x.h5
+expect 1 '--constraints needs --step' ritz-simulate $run --constraints none \
+    -o x.h5
+expect 1 "no stabilisation is called 'glue'" ritz-simulate $run --step 1e-3 \
+    --constraints glue -o x.h5
+expect 1 'is no scene' ritz-simulate rotor.h5 --step 1e-3 --seconds 1 \
+    --initial mode:7 --up-to-hz 10 --constraints none -o x.h5
+expect 0 '--constraints, of scenes' ritz-simulate --list
+works '  no file is left of what was refused' test ! -e x.h5
+printf '1..%d\n' "$count"
