@@ -102,6 +102,8 @@ typedef struct ritz_constrained_facts {
     double highest_hz; /* the same with what the method adds */
     double step_limit; /* s, of central differences; HUGE_VAL: none */
     double step_cost;  /* s of processor time, measured */
+    bool unresolved;   /* springs of a penalty are beyond 2 / step, so that an
+                          implicit integrator lets forces ring */
 } ritz_constrained_facts;
 
 void ritz_constrained_facts_free(ritz_constrained_facts *facts);

@@ -170,7 +170,7 @@ static ritz_status check_step(const ritz_constrained_request *how,
 }
 
 static ritz_status find_facts(const ritz_linked *j,
-                              const ritz_stabiliser *terms,
+                              const ritz_stabiliser *terms, double step,
                               ritz_constrained_facts *facts)
 {
     double highest = 0.0;
@@ -183,6 +183,9 @@ static ritz_status find_facts(const ritz_linked *j,
     facts->joined_hz = sqrt(j->highest) / (2.0 * RITZ_PI);
     facts->highest_hz = sqrt(highest) / (2.0 * RITZ_PI);
     facts->step_limit = highest > 0.0 ? 2.0 / sqrt(highest) : HUGE_VAL;
+    facts->unresolved =
+        !terms->multipliers &&
+        terms->stiffness > (1.0 + terms->inertia) * 4.0 / (step * step);
     return RITZ_OK;
 }
 
@@ -247,7 +250,7 @@ ritz_status ritz_simulate_constrained(const ritz_unjoined *bodies,
     asked.integrator = &integrator;
     RITZ_CHECK(ritz_linked_new(bodies, &joined));
     RITZ_CHECK(find_terms(&joined, how, &asked, found.gain, &terms));
-    RITZ_CHECK(find_facts(&joined, &terms, &found));
+    RITZ_CHECK(find_facts(&joined, &terms, asked.step, &found));
     RITZ_CHECK(check_step(how, &asked, &found));
     RITZ_CHECK(ritz_constrained_march(&joined, &terms, &asked, &march));
     RITZ_CHECK(ritz_march_run(&march, &asked, NULL, &s));

@@ -9,7 +9,8 @@ CLOSE = 0.05  # two digits
 
 GROUPS = ("Modes", "Matrices as they come", "Interfaces and bases",
           "Damping and responses", "Rankings",
-          "Reduced models that are unstable", "Joints that turn")
+          "Reduced models that are unstable", "Joints that turn",
+          "Runs over time")
 
 HEAD = """\
 # Where methods fail, and what Ritz does

@@ -73,6 +73,12 @@ sys.exit(not (none[0] > 1e-10 and abs(none[-1] / none[0] - 1) < 1e-6
               and max(held[1:]) < 1e-7 * none[0]))
 END
 
+expect 0 '' ritz-chart diagnostics drift-none.h5 drift-baumgarte.h5 \
+    drift-projection.h5 -o drift.svg
+expect 0 'violation-rate' cat drift.svg
+expect 1 "'same.h5' has no diagnostic over time" ritz-chart diagnostics same.h5 \
+    -o none.svg
+
 # --- limits -------------------------------------------------------------------
 
 expect 1 'raises the highest frequency from' ritz-simulate $run --step 1e-3 \

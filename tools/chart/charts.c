@@ -16,6 +16,8 @@ const chart_kind chart_kinds[] = {
      "a table of --tracks", chart_tracks},
     {"simulation", "outputs over time, over each other", MODEL_SIMULATION,
      "time responses", chart_simulation},
+    {"diagnostics", "what runs tell of themselves, such as violations",
+     MODEL_SIMULATION, "time responses with diagnostics", chart_diagnostics},
     {"motion", "a body deformed and stressed at four times", CHART_MOTION,
      "a collection of ritz-recover", chart_motion},
     {0},

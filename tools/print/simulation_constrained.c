@@ -66,8 +66,9 @@ static void say_facts(cli_run *run, const ritz_unjoined *bodies,
                facts->rank);
     say_redundant(run, bodies, facts);
     for (int k = 0; k < RITZ_MOST_GAINS && method->gain[k].name; k++)
-        sink_field(run, method->gain[k].name, method->gain[k].name, "%.6g %s",
-                   facts->gain[k], method->gain[k].unit);
+        sink_field(run, method->gain[k].name, method->gain[k].name, "%.6g%s%s",
+                   facts->gain[k], *method->gain[k].unit ? " " : "",
+                   method->gain[k].unit);
     sink_field(run, "highest", "highest_hz,joined_hz",
                "%.6g Hz, of the joined bodies %.6g Hz", facts->highest_hz,
                facts->joined_hz);
@@ -76,6 +77,17 @@ static void say_facts(cli_run *run, const ritz_unjoined *bodies,
                "s",
                facts->step_cost, facts->step_limit);
     sink_end(run);
+}
+
+static void warn_of_ringing(cli_run *run, double step,
+                            const ritz_constrained_facts *facts)
+{
+    if (facts->unresolved)
+        cli_warn(run,
+                 "a step of %g s resolves springs up to %.4g Hz: stiffer ones "
+                 "ring, and forces with them; --method generalised-alpha --rho "
+                 "0 ends that in some steps, index-2 has no springs",
+                 step, 1.0 / (RITZ_PI * step));
 }
 
 static ritz_status refuse_options(const simulation_task *task)
@@ -114,8 +126,10 @@ ritz_status simulation_constrained(simulation_task *task,
     asked.v0 = v0;
     RITZ_CHECK(ritz_simulate_constrained(&bodies, &how, &asked, &facts, &s));
     ritz_damping_print(&task->m.damping, s.damping);
-    if (s.num_state == 0)
+    if (s.num_state == 0) {
         say_facts(task->run, &bodies, &how, &facts);
+        warn_of_ringing(task->run, asked.step, &facts);
+    }
     RITZ_MOVE(*out, s);
     return RITZ_OK;
 }

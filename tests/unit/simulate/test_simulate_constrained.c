@@ -462,6 +462,29 @@ static void the_highest_frequency_is_told(void **state)
     }
 }
 
+/* From hz = 1 / (pi step) on. */
+static void springs_beyond_the_step_are_told(void **state)
+{
+    static const char *const names[] = {"penalty:hz=31.8", "penalty:hz=31.9",
+                                        "penalty:hz=31.8,inertia=5",
+                                        "baumgarte:beta=1000"};
+    const ritz_simulation_request request =
+        asking(&ritz_integrator_trapezoidal, 1e-2);
+    RITZ_OWN(joined) j = {0};
+
+    (void)state;
+    assert_ok(joined_new(true, &j));
+    for (int k = 0; k < 4; k++) {
+        const ritz_constrained_request how = holding(names[k]);
+        RITZ_OWN(ritz_constrained_facts) facts = {0};
+        RITZ_OWN(ritz_simulation) s = {0};
+
+        assert_ok(
+            ritz_simulate_constrained(&j.bodies, &how, &request, &facts, &s));
+        assert_int_equal(facts.unresolved, k == 1);
+    }
+}
+
 /* Just below and just above the limit that the sentence names. */
 static void a_step_beyond_the_limit_is_refused_or_seen_to_fail(void **state)
 {
@@ -719,6 +742,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(redundant_rows_are_named_and_share_forces),
     cmocka_unit_test(nearly_dependent_rows_do_not_drift),
     cmocka_unit_test(the_highest_frequency_is_told),
+    cmocka_unit_test(springs_beyond_the_step_are_told),
     cmocka_unit_test(a_step_beyond_the_limit_is_refused_or_seen_to_fail),
     cmocka_unit_test(default_parameters_fit_the_step),
     cmocka_unit_test(without_room_no_parameter_is_chosen),

@@ -1,0 +1,73 @@
+"""A penalty too stiff for the integrator
+
+A constraint is a very stiff spring, the stiffer the more exact. An explicit integrator leaves all bounds: its step has to resolve the spring. An implicit one goes on, since it is stable for any stiffness; positions look right, and the force in the joint is one that alternates between nothing and twice the right one at every step, for ever.
+
+Ritz chooses the stiffness from the step, refuses what an explicit integrator cannot hold, with the limit, and warns where an implicit one lets forces ring. Its method of index 2 has no spring.
+"""
+import numpy as np
+
+import bodies_in_time as bodies
+
+GROUP = "Runs over time"
+SPRING = 1e9
+
+
+def newmark(beta):
+    """Tip and force of the spring over time: beta 1/4 implicit, 0 explicit."""
+    K, M, C, x, _ = bodies.system()
+    K = K + SPRING * C.T @ C
+    h = bodies.STEP
+    v, tip, force = 0 * x, [x[-1]], [0.0]
+    a = np.linalg.solve(M, -K @ x)
+    with np.errstate(all="ignore"):
+        for _ in range(round(bodies.END / h)):
+            y = x + h * v + h * h * (0.5 - beta) * a
+            new = np.linalg.solve(M + beta * h * h * K, -K @ y)
+            x, v, a = y + beta * h * h * new, v + h / 2 * (a + new), new
+            tip.append(x[-1])
+            force.append(abs(SPRING * (C @ x)[0]))
+    return np.array(tip), np.array(force)
+
+
+def multiplier(seconds):
+    """|lambda|: what the first row needs beside its own springs."""
+    K, M, C, x, omega = bodies.system()
+    rest = (K @ x - omega**2 * M @ x)[2]
+    return abs(rest * np.cos(omega * seconds))
+
+
+def run(it):
+    _, _, _, x, omega = bodies.system()
+    right = x[-1] * np.cos(omega * bodies.END)
+    tip, _ = newmark(0.0)
+    it.wrong("the tip, explicit,", tip[-1], right, 1e6)
+    tip, force = newmark(0.25)
+    t = bodies.STEP * np.arange(len(force))
+    true = multiplier(t)
+    it.right("the tip, implicit,", tip[-1], right, 1e-3)
+    it.wrong("largest force, implicit,", np.max(force), np.max(true), 0.5)
+
+    bodies.scene(it)
+    stiff = "penalty:hz=5000,ratio=0"
+    words = ("simulate", "scene.yaml", "--seconds", bodies.END, "--step",
+             bodies.STEP, "--initial", f"mode:1*{bodies.START}")
+    it.says("raises the highest frequency from", 1, *words, "--method",
+            "central-difference", "--constraints", stiff, "-o", "run.h5")
+    it.says("stiffer ones ring, and forces with them", 0, *words,
+            "--constraints", stiff, "-o", "run.h5")
+    _, found, held = bodies.run(it, "--constraints", "index-2")
+    it.right("the tip, index 2,", found[-1], right, 1e-3)
+    it.right("largest force, index 2,", np.max(held), np.max(true), 1e-3)
+    it.row(f"explicit: no motion; implicit: a force of {np.max(force):.2g} at "
+           "most", f"{np.max(true):.2g}",
+           f"`raises the highest frequency`, with the limit; `stiffer ones "
+           f"ring`; by index 2 {np.max(held):.2g}")
+    it.picture("""set xlabel "s"
+set ylabel "force in the joint"
+set xrange [0:2]
+set yrange [0:*]
+set key top right
+plot $data using 1:3 with lines lw 1 lc rgb "#b2182b" title "stiff spring, trapezoidal rule", \\
+    "" using 1:2 with lines lw 3 lc rgb "#2166ac" title "right, and Ritz by index 2"
+""", "The force in the joint over time: that of a stiff spring alternates at each "
+               "step.", data=(t, true, force))
