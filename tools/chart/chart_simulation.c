@@ -17,7 +17,7 @@ enum {
 
 /* Largest over least positive value from which a scale is logarithmic, and what
    is below the largest by more is drawn at the edge. */
-static const double decades = 1e3, deepest = 1e-18;
+static const double decades = 1e5, deepest = 1e-18;
 
 /* What is drawn of a simulation. */
 typedef struct series {
