@@ -54,7 +54,8 @@ int main(int argc, char **argv)
                                 .every = 1,
                                 .indicator = 0.99,
                                 .inner = "mass",
-                                .jump = "offset"};
+                                .jump = "offset",
+                                .share_of = "model"};
     const cli_option options[] = {
         CLI_TEXT("method", &given.method, "NAME", "integrator, one of --list"),
         CLI_REAL("seconds", &given.seconds, "T", 1e-12, 1e12,
@@ -102,6 +103,12 @@ int main(int argc, char **argv)
         CLI_REAL("indicator", &given.indicator, "E", 1e-6, 1.0 - 1e-9,
                  "vectors are added until their share of the residual is "
                  "above E"),
+        CLI_WORD("share-of", &given.share_of, "model|library",
+                 "that share is of the whole residual, or of what the library "
+                 "captures of it"),
+        CLI_FLAG("look-ahead", &given.look_ahead,
+                 "take the inputs at the end of a switch interval into account "
+                 "too"),
         CLI_WORD("inner", &given.inner, "mass|euclidean",
                  "product in which vectors are orthogonal and shares are "
                  "measured"),

@@ -48,7 +48,8 @@ BEGIN {
 
 # 6.3: a cantilever of ten frame elements, clamped at node 1, dofs x, y and
 # rotation of nodes 2 to 11, and the force at its end: across until 0.5 s, along
-# from 1 s to 1.5 s, again every 2 s.
+# from 1 s to 1.5 s, again every 2 s. `turn` is the same with a stiff section,
+# the force across until 4 s and along until 8 s, again every 8 s.
 awk -v folder="$folder" '
 function add(matrix, i, j, value) {
     if (i > 0 && j > 0 && i >= j)
@@ -61,7 +62,7 @@ function place(matrix, e, i, j, value) {
         add(matrix, 3 * (e - 2) + j, 3 * (e - 2) + i, value)
 }
 function write(matrix, name,    i, j, count, file) {
-    file = folder "/beam." name ".mtx"
+    file = folder "/" name ".mtx"
     for (j = 1; j <= n; j++)
         for (i = j; i <= n; i++)
             count += (i, j) in matrix
@@ -73,7 +74,7 @@ function write(matrix, name,    i, j, count, file) {
 }
 BEGIN {
     pi = atan2(0, -1)
-    n = 30; l = 1; rho = 1000; A = 0.01; E = 1.5e6; I = 1e-5
+    n = 30; l = 1; rho = 1000; A = 0.01; E = 1.5e6; I = 1e-5; I_turn = 1
     split("12 6 -12 6 4 -6 2 12 -6 4", k)
     split("156 22 54 -13 4 13 -3 156 -22 4", m)
     split("2 2 2 2 3 3 3 5 5 6", row); split("2 3 5 6 3 5 6 5 6 6", col)
@@ -81,14 +82,17 @@ BEGIN {
     for (e = 1; e <= 10; e++) {
         place(K, e, 1, 1, E * A / l); place(K, e, 4, 1, -E * A / l)
         place(K, e, 4, 4, E * A / l)
+        place(S, e, 1, 1, E * A / l); place(S, e, 4, 1, -E * A / l)
+        place(S, e, 4, 4, E * A / l)
         place(M, e, 1, 1, rho * A * l / 3); place(M, e, 4, 1, rho * A * l / 6)
         place(M, e, 4, 4, rho * A * l / 3)
         for (t = 1; t <= 10; t++) {
             place(K, e, col[t], row[t], k[t] * E * I / l ^ (3 - power[t]))
+            place(S, e, col[t], row[t], k[t] * E * I_turn / l ^ (3 - power[t]))
             place(M, e, col[t], row[t], m[t] * rho * A * l ^ (1 + power[t]) / 420)
         }
     }
-    write(K, "K"); write(M, "M")
+    write(K, "beam.K"); write(M, "beam.M"); write(S, "turn.K")
     for (j = 2; j <= 11; j++)
         print j " 1\n" j " 2\n" j " 6" >(folder "/beam.dofs")
     for (s = 0; s <= 8000; s++) {
@@ -97,5 +101,11 @@ BEGIN {
         h = p > 0.99975 && p < 1.49975 ? f : 0
         printf "%.6g\t%.17g\n", t, g >(folder "/across.tsv")
         printf "%.6g\t%.17g\n", t, h >(folder "/along.tsv")
+    }
+    for (s = 0; s <= 16000; s++) {
+        t = s * 0.001; f = 10 * sin(10 * pi * t)
+        across = s % 8000 < 4000
+        printf "%.6g\t%.17g\n", t, across ? f : 0 >(folder "/turn-across.tsv")
+        printf "%.6g\t%.17g\n", t, across ? 0 : f >(folder "/turn-along.tsv")
     }
 }'

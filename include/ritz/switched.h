@@ -36,16 +36,22 @@ typedef struct ritz_switched {
     int64_t num_libraries;
     const ritz_dense *library; /* matrices of the model's rows: their columns
                                   are the candidates, in this order */
-    bool redundant;    /* candidates may depend on each other: each keeps its
+    bool redundant;  /* candidates may depend on each other: each keeps its
                            direction, those that are chosen are made orthogonal.
                            Else the library is made orthonormal in its order,
                            and what depends on earlier columns is left out */
-    double interval;   /* s from one switch to the next, of whole steps */
-    double least;      /* Emin, above 0 and below 1 */
+    double interval; /* s from one switch to the next, of whole steps */
+    double least;    /* Emin, above 0 and below 1 */
+    bool within; /* E is the share of what the whole library captures of R, not
+                    of R: for libraries that span less than the model, which
+                    else are always below Emin */
     double hysteresis; /* a vector of the present set counts 1 + hysteresis
                            times, and is dropped only where E without it
                            exceeds Emin by this share of 1 - Emin; 0: ties
                            alone are decided for the present set */
+    bool ahead; /* R is also taken with the inputs that the interval ends with:
+                   |psi'W R|^2 and R'W R are sums of both. Else a force that
+                   begins after a switch finds the set of before it */
     ritz_switch_inner inner;
     ritz_switch_jump jump;
     double dwell; /* s that a set is kept at least; 0: one interval */
@@ -61,7 +67,7 @@ typedef struct ritz_switched_report {
     double defect;         /* by which the condition of stability is missed:
                               see docs/methods/switched.md */
     double dwell;          /* s that such a library needs; 0: none */
-    double outside;        /* with RITZ_SWITCH_PROJECT: share of the initial state
+    double outside; /* with RITZ_SWITCH_PROJECT: share of the initial state
                               beside the library, in M, which is lost */
 } ritz_switched_report;
 

@@ -70,6 +70,7 @@ typedef struct set_model {
 typedef struct switching {
     const ritz_library *library;
     const ritz_switched *switched;
+    const ritz_simulation_request *request;
     int64_t steps_between, steps_kept; /* of interval and dwell */
     set_model set;
     ritz_choosing choosing;
@@ -77,6 +78,7 @@ typedef struct switching {
     double *told, *q_0, *w_0, *p, *v; /* within memory */
     double *memory;
     double *u0, *u1;      /* inputs and 1 */
+    double *ahead;        /* inputs that an interval ends with */
     ritz_dense Ca;        /* outputs x n, of accelerations */
     double *acceleration; /* n */
 } switching;
@@ -98,7 +100,8 @@ static void release_switching(void *own)
     ritz_dense_free(&s->choosing.rest);
     ritz_dense_free(&s->Ca);
     RITZ_FREE(s->choosing.next, s->choosing.share, s->residue.x, s->residue.v,
-              s->residue.whole, s->memory, s->u0, s->u1, s->acceleration, s);
+              s->residue.whole, s->memory, s->u0, s->u1, s->ahead,
+              s->residue.ahead, s->acceleration, s);
 }
 
 /* out = X'U'y of the span's part of y. */
@@ -300,15 +303,30 @@ static ritz_status change_set(ritz_march *march, switching *s)
     return finish_set(march, s);
 }
 
+/* Inputs at the end of the interval that begins. */
+static const double *look_ahead(const ritz_march *march, switching *s)
+{
+    const ritz_simulation_request *request = s->request;
+    const double t = (double)(march->steps + s->steps_between) * request->step;
+
+    if (!s->switched->ahead)
+        return NULL;
+    for (int64_t j = 0; request->signal && j < s->library->B.ncol; j++)
+        s->ahead[j] = ritz_signal_at(&request->signal[j], t, request->seconds);
+    return s->ahead;
+}
+
 /* Whether R at the start of a step, or where that is rounding, at its end,
    tells anything. */
 static bool find_residue(const ritz_march *march, switching *s,
                          const double *u0, const double *u1)
 {
     const double *const u[] = {u0, u1};
+    const double *ahead = look_ahead(march, s);
 
     for (int k = 0; k < 2; k++) {
-        ritz_residue_find(s->library, march->x, march->v, u[k], &s->residue);
+        ritz_residue_find(s->library, march->x, march->v, u[k], ahead,
+                          &s->residue);
         s->told[LARGEST] = fmax(s->told[LARGEST], s->residue.largest);
         if (sqrt(s->residue.square) > RITZ_SUM_ROUNDING * s->told[LARGEST])
             return true;
@@ -486,6 +504,8 @@ static ritz_status make_room(const ritz_library *library, switching *s)
         RITZ_CHECK(ritz_dense_copy(&library->vector, &s->choosing.rest));
     RITZ_CHECK_NEW(s->residue.x, library->span);
     RITZ_CHECK_NEW(s->residue.v, library->span);
+    RITZ_CHECK_NEW(s->residue.ahead, library->span);
+    RITZ_CHECK_NEW(s->ahead, library->B.ncol);
     RITZ_CHECK_NEW(s->residue.whole, library->S_x.nrow);
     RITZ_CHECK_NEW(s->acceleration, library->n);
     RITZ_CHECK_NEW(s->u0, library->B.ncol + 1);
@@ -559,6 +579,7 @@ static ritz_status start_march(const ritz_library *library,
     march->step = request->step;
     s->library = library;
     s->switched = switched;
+    s->request = request;
     RITZ_CHECK(count_steps(switched->interval, request->step, true,
                            &s->steps_between));
     RITZ_CHECK(

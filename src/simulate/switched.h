@@ -26,6 +26,7 @@ typedef struct ritz_library {
                               diag(1 / scale), orthonormal in W */
     double *scale;        /* n: 1, or 1/sqrt(mu) where W = I */
     bool redundant;       /* else `vector` is the identity */
+    bool within;          /* |R|^2 is that of the library alone */
     ritz_dense K, D, B;   /* Phi'K Phi, Phi'D Phi, Phi'B */
     ritz_dense S_x, S_k, S_d, S_b;
     double outside; /* share of the initial state beside the library */
@@ -46,16 +47,21 @@ ritz_status ritz_library_stable(const ritz_library *library,
                                 const ritz_switched *switched,
                                 ritz_switched_report *report);
 
-/* R at a switch, in the coordinates of a library. */
+/* R at a switch, in the coordinates of a library; of looking ahead, of two R
+   that differ by their inputs. */
 typedef struct ritz_residue {
-    double *x, *v;  /* span: V'W of both rows */
-    double *whole;  /* rows of S_x: to work in */
-    double square;  /* |R|^2 */
-    double largest; /* of the terms of R: what it is rounded by */
+    double *x, *v, *ahead; /* span: V'W of both rows, and of the second with
+                              the inputs ahead, else 0 */
+    double twice;          /* how often x counts */
+    double *whole;         /* rows of S_x: to work in */
+    double square;         /* |R|^2, or the sum of both */
+    double largest;        /* of the terms of R: what it is rounded by */
 } ritz_residue;
 
+/** @param[in] ahead  inputs ahead; NULL: one R */
 void ritz_residue_find(const ritz_library *library, const double *q,
-                       const double *w, const double *u, ritz_residue *r);
+                       const double *w, const double *u, const double *ahead,
+                       ritz_residue *r);
 
 /* What is chosen, and what it takes to choose. */
 typedef struct ritz_choosing {

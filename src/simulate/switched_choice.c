@@ -16,7 +16,7 @@
 #include <math.h>
 #include <string.h>
 
-/* out += A x of the first rows and columns, scaled. */
+/* |A x|, A x being left in `whole`. */
 static double whole_size(const ritz_dense *A, const double *x, double *whole)
 {
     memset(whole, 0, (size_t)A->nrow * sizeof *whole);
@@ -24,21 +24,10 @@ static double whole_size(const ritz_dense *A, const double *x, double *whole)
     return sqrt(ritz_motion_dot(A->nrow, whole, whole));
 }
 
-void ritz_residue_find(const ritz_library *library, const double *q,
-                       const double *w, const double *u, ritz_residue *r)
+/* V'W M^-1 (B u - K q - D w) */
+static void find_force(const ritz_library *library, const double *q,
+                       const double *w, const double *u, double *out)
 {
-    const int64_t rows = library->S_x.nrow;
-    const double moved = whole_size(&library->S_x, w, r->whole);
-    const double terms[] = {whole_size(&library->S_k, q, r->whole),
-                            whole_size(&library->S_d, w, r->whole),
-                            whole_size(&library->S_b, u, r->whole)};
-    double force = 0.0;
-
-    ritz_motion_gemv(&library->S_k, 1.0, q, r->whole);
-    ritz_motion_gemv(&library->S_d, 1.0, w, r->whole);
-    force = ritz_motion_dot(rows, r->whole, r->whole);
-    r->square = moved * moved + force;
-    r->largest = fmax(moved, terms[0] + terms[1] + terms[2]);
     for (int64_t i = 0; i < library->span; i++) {
         double sum = 0.0;
 
@@ -47,9 +36,45 @@ void ritz_residue_find(const ritz_library *library, const double *q,
         for (int64_t j = 0; j < library->n; j++)
             sum -= ritz_dense_col(&library->K, j)[i] * q[j] +
                    ritz_dense_col(&library->D, j)[i] * w[j];
-        r->v[i] = library->scale[i] * sum;
-        r->x[i] = library->scale[i] * w[i];
+        out[i] = library->scale[i] * sum;
     }
+}
+
+/* |M^-1 (B u - K q - D w)|^2 in W, its terms being noted. */
+static double square_of_force(const ritz_library *library, const double *q,
+                              const double *w, const double *u, ritz_residue *r)
+{
+    const double terms = whole_size(&library->S_k, q, r->whole) +
+                         whole_size(&library->S_d, w, r->whole) +
+                         whole_size(&library->S_b, u, r->whole);
+
+    r->largest = fmax(r->largest, terms);
+    ritz_motion_gemv(&library->S_k, 1.0, q, r->whole);
+    ritz_motion_gemv(&library->S_d, 1.0, w, r->whole);
+    return ritz_motion_dot(library->S_x.nrow, r->whole, r->whole);
+}
+
+void ritz_residue_find(const ritz_library *library, const double *q,
+                       const double *w, const double *u, const double *ahead,
+                       ritz_residue *r)
+{
+    const int64_t n = library->span;
+    const double moved = whole_size(&library->S_x, w, r->whole);
+
+    r->twice = ahead ? 2.0 : 1.0;
+    r->largest = moved;
+    r->square = r->twice * moved * moved + square_of_force(library, q, w, u, r);
+    find_force(library, q, w, u, r->v);
+    for (int64_t i = 0; i < n; i++)
+        r->x[i] = library->scale[i] * w[i];
+    if (ahead) {
+        r->square += square_of_force(library, q, w, ahead, r);
+        find_force(library, q, w, ahead, r->ahead);
+    }
+    if (library->within)
+        r->square = r->twice * ritz_motion_dot(n, r->x, r->x) +
+                    ritz_motion_dot(n, r->v, r->v) +
+                    ritz_motion_dot(n, r->ahead, r->ahead);
 }
 
 static double share_of(const ritz_residue *r, int64_t n, const double *psi,
@@ -57,8 +82,9 @@ static double share_of(const ritz_residue *r, int64_t n, const double *psi,
 {
     const double x = ritz_motion_dot(n, psi, r->x) / size;
     const double v = ritz_motion_dot(n, psi, r->v) / size;
+    const double ahead = ritz_motion_dot(n, psi, r->ahead) / size;
 
-    return (x * x + v * v) / r->square;
+    return (r->twice * x * x + v * v + ahead * ahead) / r->square;
 }
 
 /* Shares of all that are not chosen; 0 of what has nothing new. */
@@ -69,7 +95,9 @@ static void find_shares(const ritz_library *library, const ritz_residue *r,
 
     for (int64_t k = 0; k < library->num_vectors; k++) {
         if (!library->redundant) {
-            c->share[k] = (r->x[k] * r->x[k] + r->v[k] * r->v[k]) / r->square;
+            c->share[k] = (r->twice * r->x[k] * r->x[k] + r->v[k] * r->v[k] +
+                           r->ahead[k] * r->ahead[k]) /
+                          r->square;
             continue;
         }
         const double *psi = ritz_dense_col(&c->rest, k);

@@ -53,7 +53,8 @@ typedef ritz_status chart_draw(const chart_sources *sources,
                                const chart_request *request, picture *out);
 
 chart_draw chart_pareto, chart_convergence, chart_hankel, chart_response,
-    chart_mac, chart_tracks, chart_simulation, chart_diagnostics, chart_motion;
+    chart_mac, chart_tracks, chart_simulation, chart_diagnostics,
+    chart_switched, chart_motion;
 
 typedef struct chart_kind {
     const char *name, *summary;

@@ -18,6 +18,8 @@ const chart_kind chart_kinds[] = {
      "time responses", chart_simulation},
     {"diagnostics", "what runs tell of themselves, such as violations",
      MODEL_SIMULATION, "time responses with diagnostics", chart_diagnostics},
+    {"switched", "vectors of switched models over time, errors below",
+     MODEL_SIMULATION, "time responses, the full model first", chart_switched},
     {"motion", "a body deformed and stressed at four times", CHART_MOTION,
      "a collection of ritz-recover", chart_motion},
     {0},

@@ -349,10 +349,10 @@ typedef struct simulation_options {
     int64_t every;
     cli_list input; /* "NAME=SIGNAL" */
     bool hold_zero, cost, coordinates, any_step;
-    const char *switched;     /* "LIBRARY,LIBRARY"; NULL: not switched */
-    const char *inner, *jump; /* words */
+    const char *switched;                /* "LIBRARY,LIBRARY"; NULL: not */
+    const char *inner, *jump, *share_of; /* words */
     double switch_interval, indicator, hysteresis, dwell;
-    bool redundant;
+    bool redundant, look_ahead;
     model_options model;
 } simulation_options;
 
