@@ -22,6 +22,7 @@
 #include <ritz/response.h>
 #include <ritz/scene.h>
 #include <ritz/simulate.h>
+#include <ritz/spin.h>
 #include <ritz/state_space.h>
 #include <ritz/subspace.h>
 #include <ritz/switched.h>
