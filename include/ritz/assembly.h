@@ -111,9 +111,42 @@ ritz_status ritz_stage_unjoined(const ritz_stage *stage, const double *setting,
                                 const ritz_damping *damping,
                                 ritz_unjoined *out);
 
-/** The system at every configuration of the scene, or at @p at alone. */
+/** The system at every configuration of the scene, or at @p at alone. A spin of
+ * constant rate is in its K, D and inputs; of a rate that changes it is at
+ * rest. */
 ritz_status ritz_assemble(const ritz_stage *stage, const char *at,
                           ritz_system *out);
+
+/** The input that a system of a scene with a constant spin has in addition: at
+ * 1 it is the centrifugal load. */
+#define RITZ_SPIN_INPUT "centrifugal"
+
+/**
+ * Terms of the spin of a scene, as its spin model keeps them, in the coordinates
+ * of a system of the stage.
+ *
+ * @return RITZ_ERR_ARGUMENT if there is no spin, a body has no inertia
+ *         invariants, a load is missing, or a stiffening is of another origin
+ */
+ritz_status ritz_stage_spin(const ritz_stage *stage,
+                            const ritz_configuration *at, ritz_spin_terms *out);
+
+/** The first stiffening that body @p k of a scene that spins needs and has not;
+ * RITZ_NUM_STIFFENINGS: none. */
+int ritz_stage_spin_lacks(const ritz_stage *stage, const ritz_configuration *at,
+                          int64_t k);
+
+/**
+ * Rates that limit the model of a scene that spins: that at which the stiffness
+ * of its spin model is not definite any more, NaN where bodies are free; and
+ * that below which leaving out stiffening changes no frequency up to the end of
+ * the band (of all modes without one) by more than @p error.
+ *
+ * @return RITZ_ERR_ARGUMENT as ritz_stage_spin
+ */
+ritz_status ritz_stage_spin_limits(const ritz_stage *stage,
+                                   const double *setting, double error,
+                                   ritz_spin_limits *out);
 
 /* Which dof of which body a dof of the full-order system is. */
 typedef struct ritz_master {

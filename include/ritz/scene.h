@@ -9,8 +9,24 @@
 #include <ritz/basis.h>
 #include <ritz/container.h>
 #include <ritz/model.h>
+#include <ritz/spin.h>
 
 #pragma GCC visibility push(default)
+
+/* Geometric stiffness of a component that spins: names of its loads. */
+typedef enum ritz_stiffening {
+    RITZ_STIFFENING_XX, /* for w_x^2 in the component's basic frame, ... */
+    RITZ_STIFFENING_YY,
+    RITZ_STIFFENING_ZZ,
+    RITZ_STIFFENING_XY, /* for w_x w_y, ... */
+    RITZ_STIFFENING_YZ,
+    RITZ_STIFFENING_XZ,
+    RITZ_STIFFENING_TIP, /* for a unit of tension by what is outboard */
+    RITZ_NUM_STIFFENINGS,
+} ritz_stiffening;
+
+/* "spin_zz", "tip". */
+extern const char ritz_stiffening_word[RITZ_NUM_STIFFENINGS][16];
 
 typedef struct ritz_scene_component {
     char name[RITZ_NAME_SIZE];
@@ -20,7 +36,8 @@ typedef struct ritz_scene_component {
     int64_t modes;   /* -1: none given */
     double up_to_hz; /* 0: none given */
     char *attach;    /* ports with commas between; NULL: those of the scene */
-    ritz_choice choice;   /* further options of the basis */
+    ritz_choice choice; /* further options of the basis */
+    char stiffening[RITZ_NUM_STIFFENINGS][RITZ_NAME_SIZE]; /* "": none */
     int64_t line, column; /* where it stands, for later refusals */
 } ritz_scene_component;
 
@@ -152,6 +169,16 @@ typedef enum ritz_extraneous {
                                     modes */
 } ritz_extraneous;
 
+/* How the whole scene turns, in the basic frame of its first body. */
+typedef struct ritz_scene_spin {
+    bool given;
+    double axis[3];    /* unit */
+    double through[3]; /* a point of the axis */
+    ritz_spin_rate rate;
+    ritz_spin_model model;
+    int64_t line, column;
+} ritz_scene_spin;
+
 typedef struct ritz_scene {
     char *path; /* of the file, for messages */
     char name[RITZ_NAME_SIZE];
@@ -170,6 +197,7 @@ typedef struct ritz_scene {
     ritz_scene_io *output;
     double band_hz[2]; /* [0, 0] if none */
     ritz_damping damping;
+    ritz_scene_spin spin;
     ritz_selection select;
     char select_by[RITZ_NAME_SIZE]; /* ranking; "hankel" */
     double select_tolerance;        /* 1e-3 */
@@ -237,6 +265,9 @@ ritz_status ritz_scene_set_extraneous(ritz_scene *scene, const char *word);
 ritz_status ritz_scene_context(const ritz_scene *scene, ritz_status status,
                                int64_t line, int64_t column, const char *kind,
                                const char *name);
+
+/** "consistent", "inconsistent" or "ruthless". */
+const char *ritz_spin_model_name(ritz_spin_model model);
 
 void ritz_scene_free(ritz_scene *scene);
 

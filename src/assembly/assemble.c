@@ -187,8 +187,9 @@ static ritz_status fill_configuration(const ritz_stage *stage,
     return ritz_place_configuration(stage, setting, c);
 }
 
-ritz_status ritz_stage_assemble(const ritz_stage *stage, const double *setting,
-                                ritz_configuration *out)
+static ritz_status assemble_bodies(const ritz_stage *stage,
+                                   const double *setting,
+                                   ritz_configuration *out)
 {
     RITZ_OWN(ritz_configuration) c = {0};
     RITZ_OWN(ritz_springs) springs = {0};
@@ -206,6 +207,18 @@ ritz_status ritz_stage_assemble(const ritz_stage *stage, const double *setting,
     RITZ_CHECK(fill_configuration(stage, setting, &springs, &P, &c));
     RITZ_MOVE(*out, c);
     return RITZ_OK;
+}
+
+ritz_status ritz_stage_assemble(const ritz_stage *stage, const double *setting,
+                                ritz_configuration *out)
+{
+    const ritz_scene_spin *spin = &stage->scene->spin;
+    RITZ_OWN(ritz_spun) spun = {0};
+
+    if (!spin->given || spin->rate.course != RITZ_SPIN_CONSTANT)
+        return assemble_bodies(stage, setting, out);
+    RITZ_CHECK(ritz_stage_spun(stage, setting, &spun));
+    return assemble_bodies(&spun.stage, setting, out);
 }
 
 /* Coordinates up to which threads work on a system each. Matrices are then

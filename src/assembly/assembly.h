@@ -180,6 +180,28 @@ ritz_status ritz_place_configuration(const ritz_stage *stage,
                                      const double *setting,
                                      ritz_configuration *configuration);
 
+/** Rotations and translations of all bodies, a row of twelve numbers each, as
+ * ritz_configuration.places. */
+ritz_status ritz_place_stage(const ritz_stage *stage, const double *setting,
+                             ritz_dense *out);
+
+/* A stage whose bodies turn at the constant rate of the scene: K, D and io are
+   its own, all else is borrowed from the stage at rest. */
+typedef struct ritz_spun {
+    ritz_stage stage;
+} ritz_spun;
+
+/**
+ * @return RITZ_ERR_ARGUMENT if a body has no invariants, a load is missing, a
+ *         stiffening is of another origin, or bodies have force columns
+ */
+ritz_status ritz_stage_spun(const ritz_stage *stage, const double *setting,
+                            ritz_spun *out);
+void ritz_spun_free(ritz_spun *spun);
+
+/** RITZ_ERR_ARGUMENT if the scene spins; for methods that know no spin. */
+ritz_status ritz_spin_refuse(const ritz_scene *scene);
+
 /*
  * The springs and dampers of caged directions. Spring k is stretched by row k
  * of S q: it adds k_k s_k s_k' to K, and its damper c_k s_k s_k' to D.

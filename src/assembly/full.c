@@ -471,6 +471,7 @@ ritz_status ritz_assemble_full(const ritz_scene *scene, const double *setting,
     RITZ_OWN_ARRAY ritz_master *master = NULL;
     RITZ_OWN_ARRAY int64_t *pivot_of = NULL;
 
+    RITZ_CHECK(ritz_spin_refuse(scene));
     RITZ_CHECK(load_bodies(&p));
     RITZ_CHECK(build_stage(&p));
     RITZ_CHECK(check_units(scene, &p));

@@ -29,6 +29,9 @@
 /* Asymmetry of a matrix, relative to its largest entry, that rounding of its
    sums explains. */
 #define RITZ_SYMMETRIC 1e-12
+/* A stiffening that was made for a spin about a point is of an axis that passes
+   it by this part of the size of the body: it is then wrong by about as much. */
+#define RITZ_SPIN_AWAY 1e-6
 /* A scale that would be 0 is this, so that it divides. */
 #define RITZ_LEAST_SCALE 1e-300
 

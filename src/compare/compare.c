@@ -578,6 +578,7 @@ ritz_status ritz_compare_until(const ritz_stage *stage, const ritz_stop *stop,
     RITZ_OWN(ritz_comparison) c = {.next_drop = nan("")};
 
     RITZ_CHECK(refuse_forces(stage));
+    RITZ_CHECK(ritz_spin_refuse(stage->scene));
     RITZ_CHECK(list_rows(stage->scene, &c));
     RITZ_CHECK_IN("stage 1", ritz_assemble_until(stage, stop, &c.first_system));
     c.num_composed = c.first_system.num_configurations;

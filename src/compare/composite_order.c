@@ -293,6 +293,7 @@ ritz_status ritz_composite_new(const ritz_stage *stage, ritz_composite *out)
     RITZ_OWN(ordering) g = {0};
     RITZ_OWN(ritz_composite) made = {0};
 
+    RITZ_CHECK(ritz_spin_refuse(stage->scene));
     RITZ_CHECK(ritz_dual_refuse(stage));
     RITZ_CHECK(assemble_ordering(stage, &g));
     RITZ_CHECK_IN("composite modes", order_bodies(&g, &made));

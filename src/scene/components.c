@@ -60,7 +60,17 @@ static ritz_status take_attach(const ritz_yaml *yaml, const yaml_node_t *node,
     return RITZ_OK;
 }
 
-enum { MODEL, BASIS, ORDER, MODES, UP_TO, ATTACH, NUM_KEYS, MOST_KEYS = 32 };
+enum {
+    MODEL,
+    BASIS,
+    ORDER,
+    STIFFENING,
+    MODES,
+    UP_TO,
+    ATTACH,
+    NUM_KEYS,
+    MOST_KEYS = 32
+};
 
 static const ritz_yaml_key keys[NUM_KEYS] = {
     [MODEL] = {"model", true, RITZ_YAML_TEXT,
@@ -70,6 +80,9 @@ static const ritz_yaml_key keys[NUM_KEYS] = {
     [ORDER] = {"order", false, RITZ_YAML_WHOLE,
                .offset = offsetof(ritz_scene_component, order), .least = 1,
                .most = INT64_MAX, .after = " columns are no model"},
+    [STIFFENING] = {"stiffening", false, RITZ_YAML_BY_HAND,
+                    .offset = offsetof(ritz_scene_component, stiffening),
+                    .take = ritz_scene_stiffening},
     [MODES] = {"modes", false, RITZ_YAML_WHOLE,
                .offset = offsetof(ritz_scene_component, modes),
                .most = INT64_MAX, .after = " modes cannot be kept"},

@@ -475,6 +475,8 @@ enum { /* in the order in which parts name each other */
        OUTPUTS,
        BAND,
        DAMPING,
+       SPIN,
+       SPIN_MODEL,
        SELECT,
        COMPOSITE,
        AUGMENT,
@@ -499,6 +501,8 @@ static const ritz_yaml_key keys[NUM_KEYS] = {
               .offset = offsetof(ritz_scene, band_hz), .take = take_band},
     [DAMPING] = {"damping", false, RITZ_YAML_BY_HAND,
                  .offset = offsetof(ritz_scene, damping), .take = take_damping},
+    [SPIN] = {.name = "spin"},
+    [SPIN_MODEL] = {.name = "spin_model"},
     [COMPONENTS] = {.name = "components", .required = true},
     [JOINTS] = {.name = "joints"},
     [CONFIGURATIONS] = {.name = "configurations"},
@@ -516,6 +520,8 @@ static ritz_scene_part *const parts[NUM_KEYS] = {
     [CONFIGURATIONS] = ritz_scene_configurations,
     [INPUTS] = ritz_scene_inputs,
     [OUTPUTS] = ritz_scene_outputs,
+    [SPIN] = ritz_scene_spin_part,
+    [SPIN_MODEL] = ritz_scene_spin_model,
     [SELECT] = read_selection,
     [COMPOSITE] = ritz_scene_composite,
     [AUGMENT] = read_augmentation,
@@ -596,6 +602,7 @@ void ritz_scene_free(ritz_scene *scene)
     }
     for (int64_t k = 0; k < scene->num_sweeps; k++)
         free(scene->sweep[k].setting);
+    ritz_spin_rate_free(&scene->spin.rate);
     RITZ_FREE(scene->path, scene->component, scene->joint, scene->sweep,
               scene->setting, scene->input, scene->output, scene->reference,
               scene->select_mode, scene->attached_force);

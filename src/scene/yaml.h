@@ -167,6 +167,11 @@ ritz_scene_part ritz_scene_configurations;
 ritz_scene_part ritz_scene_inputs;
 ritz_scene_part ritz_scene_outputs;
 ritz_scene_part ritz_scene_composite;
+ritz_scene_part ritz_scene_spin_part;
+ritz_scene_part ritz_scene_spin_model;
+
+/** Names of loads, in the field `stiffening` of a component. */
+ritz_yaml_take ritz_scene_stiffening;
 
 /** Number of items of a list of parts, refused if it is too long. */
 ritz_status ritz_scene_count(const ritz_yaml *yaml, const yaml_node_t *node,
