@@ -15,6 +15,7 @@
 
 #include <ritz/model.h>
 #include <ritz/response.h>
+#include <ritz/spin.h>
 
 #include <stdbool.h>
 
@@ -210,6 +211,24 @@ ritz_status ritz_simulate_accurate(ritz_model subject,
                                    const ritz_simulation_request *request,
                                    double tolerance, ritz_accuracy *reached,
                                    ritz_simulation *out);
+
+/**
+ * Simulate a model in a frame that turns at a rate which may change, from a
+ * start in that frame: x0, v0, displacements, velocities and accelerations are
+ * relative to it. Diagnostics are the rate, its derivative, the angle, the work
+ * of what holds the rate (in `work` too), and the energy of stiffening, W^2 x'KG
+ * x / 2.
+ * Kinetic energy is that in the frame at rest, with that of the spin itself.
+ *
+ * @param[in] terms  in the coordinates of the model
+ * @return RITZ_ERR_ARGUMENT if the integrator is not trapezoidal, coordinates
+ *         are wanted, or sizes disagree; RITZ_ERR_CONVERGENCE, as ritz_simulate
+ * @cost   O(r^3) a step while the rate changes, O(r^2) while it does not
+ */
+ritz_status ritz_simulate_spun(ritz_model subject, const ritz_spin_terms *terms,
+                               const ritz_spin_rate *rate,
+                               const ritz_simulation_request *request,
+                               ritz_simulation *out);
 
 /**
  * Largest difference of the outputs at the same times, of each output relative

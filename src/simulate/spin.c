@@ -1,0 +1,327 @@
+/*
+ * A model in a frame whose rate W(t) changes: see ritz/spin.h. The implicit
+ * midpoint rule, with <.> the mean over a step and means of x and v those of
+ * both ends,
+ *
+ *     M (v_1 - v_0) / h + (D + <W> G) v + (K + <W^2> H + <W'> G / 2) x
+ *         = B u + <W^2> centrifugal + <W'> euler,    x_1 = x_0 + h v,
+ *
+ * H = S + KG, <W'> exact, <W> and <W^2> by Simpson's rule, exact where W is
+ * linear. It is of second order, at corners of a profile within a step too,
+ * since the impulse of Euler's force is exact. At a constant rate it is the
+ * trapezoidal rule.
+ *
+ * Its equations are those of the Lagrangian
+ *
+ *     L = v'M v / 2 + W (-euler'v + v'G x / 2)
+ *         + W^2 (J + 2 centrifugal'x - x'H x) / 2 - x'K x / 2
+ *
+ * with the angular momentum p = dL/dW about the axis. What holds the rate takes
+ * the moment p', so that kinetic energy T = L + x'K x / 2, strain energy and
+ * what D took change by the work of inputs and int W dp. Its integrals over a
+ * step are h v'D v, (x_1 - x_0)'B u and <W> (p_1 - p_0): balance is of the order
+ * of h^2.
+ */
+#include "simulate/motion.h"
+
+#include "base/alloc.h"
+#include "linear/general.h"
+
+#include <math.h>
+#include <string.h>
+
+typedef struct spun {
+    const ritz_spin_terms *terms;
+    const ritz_spin_rate *rate;
+    const ritz_io *io;
+    ritz_dense H;          /* {0}: none */
+    ritz_general_factor F; /* of the matrix at `mean` */
+    double mean[3];        /* <W>, <W^2>, <W'> of it */
+    bool factored;
+    ritz_general_factor mass; /* of M; made if outputs have accelerations */
+    ritz_dense f;             /* n x 1, right side and then <v> */
+    double *g;                /* n, to work in */
+    double *memory;           /* work of what holds the rate */
+} spun;
+
+enum { RATE, ACCELERATION, ANGLE, SPIN_WORK, STIFFENING, NUM_DIAGNOSTICS };
+
+static const char *const diagnostics[NUM_DIAGNOSTICS] = {
+    [RATE] = "rate",
+    [ACCELERATION] = "acceleration",
+    [ANGLE] = "angle",
+    [SPIN_WORK] = "spin work",
+    [STIFFENING] = "stiffening",
+};
+
+static void release_spun(void *own)
+{
+    spun *s = own;
+
+    ritz_dense_free(&s->H);
+    ritz_general_factor_free(&s->F);
+    ritz_general_factor_free(&s->mass);
+    ritz_dense_free(&s->f);
+    RITZ_FREE(s->g, s->memory, s);
+}
+
+static double time_of(const ritz_march *march)
+{
+    return (double)march->steps * march->step;
+}
+
+/* g += (K + W2 H + A G / 2) x; G {0} and H {0} add nothing. */
+static void add_stiffness(const ritz_march *march, const double mean[3],
+                          double sign, const double *x, double *g)
+{
+    const spun *s = march->own;
+
+    ritz_motion_gemv(&march->motion->K, sign, x, g);
+    ritz_motion_gemv(&s->H, sign * mean[1], x, g);
+    ritz_motion_gemv(&s->terms->G, 0.5 * sign * mean[2], x, g);
+}
+
+/* g += <W^2> centrifugal + <W'> euler */
+static void add_loads(const spun *s, const double mean[3], int64_t n, double *g)
+{
+    const double *c = ritz_dense_col(&s->terms->load, 0);
+    const double *e = ritz_dense_col(&s->terms->load, 1);
+
+    for (int64_t k = 0; k < n; k++)
+        g[k] += mean[1] * c[k] + mean[2] * e[k];
+}
+
+static void add_scaled(double factor, const ritz_dense *A, ritz_dense *to)
+{
+    if (A->val && factor != 0.0)
+        ritz_dense_add(factor, A, to);
+}
+
+/* M + h/2 (D + <W> G) + h^2/4 (K + <W^2> H + <W'> G / 2) */
+static ritz_status factor_step(ritz_march *march, const double mean[3])
+{
+    const ritz_motion *m = march->motion;
+    const double half = 0.5 * march->step;
+    spun *s = march->own;
+    RITZ_OWN(ritz_dense) A = {0};
+
+    if (s->factored && memcmp(mean, s->mean, sizeof s->mean) == 0)
+        return RITZ_OK;
+    s->factored = false;
+    ritz_general_factor_free(&s->F);
+    RITZ_CHECK(ritz_dense_copy(&m->M, &A));
+    add_scaled(half, &m->D, &A);
+    add_scaled(half * half, &m->K, &A);
+    add_scaled(half * (mean[0] + 0.5 * half * mean[2]), &s->terms->G, &A);
+    add_scaled(half * half * mean[1], &s->H, &A);
+    RITZ_CHECK_IN("the matrix of a step", ritz_general_factor_new(&A, &s->F));
+    memcpy(s->mean, mean, sizeof s->mean);
+    s->factored = true;
+    return RITZ_OK;
+}
+
+/* Of a rate W. */
+static double angular_momentum(const ritz_march *march, double W)
+{
+    const spun *s = march->own;
+    const int64_t n = march->motion->n;
+    const double *c = ritz_dense_col(&s->terms->load, 0);
+    const double *e = ritz_dense_col(&s->terms->load, 1);
+
+    memset(s->g, 0, (size_t)n * sizeof *s->g);
+    ritz_motion_gemv(&s->terms->G, 0.5, march->x, s->g);
+    return W * (s->terms->inertia + 2.0 * ritz_motion_dot(n, c, march->x) -
+                ritz_motion_form(&s->H, march->x)) -
+           ritz_motion_dot(n, e, march->v) + ritz_motion_dot(n, s->g, march->v);
+}
+
+/* What D took and inputs gave, <v> being in f. */
+static void account_step(ritz_march *march, const double *u0, const double *u1)
+{
+    const ritz_motion *m = march->motion;
+    const spun *s = march->own;
+    const double h = march->step;
+
+    march->dissipated += h * ritz_motion_form(&m->D, s->f.val);
+    for (int64_t j = 0; j < m->B.ncol; j++)
+        march->work +=
+            0.5 * h * (u0[j] + u1[j]) *
+            ritz_motion_dot(m->n, ritz_dense_col(&m->B, j), s->f.val);
+}
+
+/* h/2 times the right side, from which <v> follows. */
+static void load_step(const ritz_march *march, const double mean[3],
+                      const double *u0, const double *u1)
+{
+    const ritz_motion *m = march->motion;
+    const double half = 0.5 * march->step;
+    spun *s = march->own;
+
+    memset(s->f.val, 0, (size_t)m->n * sizeof *s->f.val);
+    ritz_motion_gemv(&m->B, 0.5, u0, s->f.val);
+    ritz_motion_gemv(&m->B, 0.5, u1, s->f.val);
+    add_loads(s, mean, m->n, s->f.val);
+    add_stiffness(march, mean, -1.0, march->x, s->f.val);
+    for (int64_t k = 0; k < m->n; k++)
+        s->f.val[k] *= half;
+    ritz_motion_gemv(&m->M, 1.0, march->v, s->f.val);
+}
+
+static ritz_status advance_spun(ritz_march *march, const double *u0,
+                                const double *u1)
+{
+    const double h = march->step, t = time_of(march), t1 = t + h;
+    spun *s = march->own;
+    const double W0 = ritz_spin_rate_at(s->rate, t);
+    const double Wm = ritz_spin_rate_at(s->rate, t + 0.5 * h);
+    const double W1 = ritz_spin_rate_at(s->rate, t1);
+    const double mean[3] = {(W0 + 4.0 * Wm + W1) / 6.0,
+                            (W0 * W0 + 4.0 * Wm * Wm + W1 * W1) / 6.0,
+                            (W1 - W0) / h};
+    double moment = -angular_momentum(march, W0);
+
+    RITZ_CHECK(factor_step(march, mean));
+    load_step(march, mean, u0, u1);
+    ritz_general_factor_solve(&s->F, false, &s->f);
+    for (int64_t k = 0; k < march->motion->n; k++) {
+        march->x[k] += h * s->f.val[k];
+        march->v[k] = 2.0 * s->f.val[k] - march->v[k];
+    }
+    account_step(march, u0, u1);
+    moment += angular_momentum(march, W1);
+    s->memory[0] += mean[0] * moment;
+    march->work += mean[0] * moment;
+    return RITZ_OK;
+}
+
+/* T of the Lagrangian, and the strain energy. */
+static void find_energy(const ritz_march *march, double *kinetic,
+                        double *potential)
+{
+    const spun *s = march->own;
+    const int64_t n = march->motion->n;
+    const double W = ritz_spin_rate_at(s->rate, time_of(march));
+    const double p = angular_momentum(march, W);
+    const double *c = ritz_dense_col(&s->terms->load, 0);
+
+    *potential = 0.5 * ritz_motion_form(&march->motion->K, march->x);
+    *kinetic = 0.5 * ritz_motion_form(&march->motion->M, march->v) + W * p -
+               0.5 * W * W *
+                   (s->terms->inertia + 2.0 * ritz_motion_dot(n, c, march->x) -
+                    ritz_motion_form(&s->H, march->x));
+}
+
+/* y = C x + Cv x' + Ca x'', x'' from equilibrium in the turning frame. */
+static void find_outputs(const ritz_march *march, const double *u, double *y)
+{
+    const ritz_motion *m = march->motion;
+    spun *s = march->own;
+    const double t = time_of(march);
+    const double W = ritz_spin_rate_at(s->rate, t);
+    const double mean[3] = {W, W * W, ritz_spin_acceleration_at(s->rate, t)};
+
+    memset(y, 0, (size_t)m->C.nrow * sizeof *y);
+    ritz_motion_gemv(&m->C, 1.0, march->x, y);
+    ritz_motion_gemv(&m->Cv, 1.0, march->v, y);
+    ritz_motion_gemv(&m->feed, 1.0, u, y);
+    if (!s->mass.LU.val)
+        return;
+    /* the motion has written x'' out at rest: what the spin adds to it */
+    memset(s->f.val, 0, (size_t)m->n * sizeof *s->f.val);
+    add_loads(s, mean, m->n, s->f.val);
+    ritz_motion_gemv(&s->H, -mean[1], march->x, s->f.val);
+    ritz_motion_gemv(&s->terms->G, -0.5 * mean[2], march->x, s->f.val);
+    ritz_motion_gemv(&s->terms->G, -W, march->v, s->f.val);
+    ritz_general_factor_solve(&s->mass, false, &s->f);
+    ritz_motion_gemv(&s->io->Ca, 1.0, s->f.val, y);
+}
+
+static void diagnose(const ritz_march *march, double *out)
+{
+    const spun *s = march->own;
+    const double t = time_of(march);
+
+    out[RATE] = ritz_spin_rate_at(s->rate, t);
+    out[ACCELERATION] = ritz_spin_acceleration_at(s->rate, t);
+    out[ANGLE] = ritz_spin_angle_at(s->rate, t);
+    out[SPIN_WORK] = s->memory[0];
+    out[STIFFENING] =
+        0.5 * out[RATE] * out[RATE] * ritz_motion_form(&s->terms->KG, march->x);
+}
+
+static ritz_status start_spun(const ritz_spin_terms *terms,
+                              const ritz_spin_rate *rate, const ritz_io *io,
+                              const ritz_motion *motion, ritz_march *march)
+{
+    spun *s = NULL;
+
+    RITZ_CHECK_NEW(s, 1);
+    march->own = s;
+    march->free = release_spun;
+    s->terms = terms;
+    s->rate = rate;
+    s->io = io;
+    RITZ_CHECK_NEW(march->x, motion->n);
+    RITZ_CHECK_NEW(march->v, motion->n);
+    RITZ_CHECK_NEW(s->g, motion->n);
+    RITZ_CHECK_NEW(s->memory, 1);
+    RITZ_CHECK(ritz_dense_new(motion->n, 1, &s->f));
+    if (terms->S.val || terms->KG.val)
+        RITZ_CHECK(ritz_dense_new(motion->n, motion->n, &s->H));
+    add_scaled(1.0, &terms->S, &s->H);
+    add_scaled(1.0, &terms->KG, &s->H);
+    if (ritz_dense_max(&io->Ca) > 0.0)
+        RITZ_CHECK(ritz_general_factor_new(&motion->M, &s->mass));
+    march->motion = motion;
+    march->memory = s->memory;
+    march->num_memory = 1;
+    march->advance = advance_spun;
+    march->outputs = find_outputs;
+    march->energy = find_energy;
+    march->diagnose = diagnose;
+    march->diagnostic = diagnostics;
+    march->num_diagnostics = NUM_DIAGNOSTICS;
+    return RITZ_OK;
+}
+
+static ritz_status check_request(ritz_model subject,
+                                 const ritz_spin_terms *terms,
+                                 const ritz_simulation_request *request)
+{
+    RITZ_REFUSE_IF(subject.kind != RITZ_MODEL_DENSE, RITZ_ERR_ARGUMENT,
+                   "a spin is of reduced components and systems");
+    RITZ_REFUSE_IF(request->integrator != &ritz_integrator_trapezoidal,
+                   RITZ_ERR_ARGUMENT,
+                   "matrices of a rate that changes are integrated by "
+                   "trapezoidal alone, not by %s",
+                   request->integrator->name);
+    RITZ_REFUSE_IF(request->coordinates, RITZ_ERR_ARGUMENT,
+                   "coordinates are stored of one linear model alone, not of a "
+                   "rate that changes");
+    RITZ_REFUSE_IF(terms->load.nrow != ritz_model_order(subject),
+                   RITZ_ERR_ARGUMENT,
+                   "the spin is of another model: its order is %ld, not %ld",
+                   (long)terms->load.nrow, (long)ritz_model_order(subject));
+    return RITZ_OK;
+}
+
+ritz_status ritz_simulate_spun(ritz_model subject, const ritz_spin_terms *terms,
+                               const ritz_spin_rate *rate,
+                               const ritz_simulation_request *request,
+                               ritz_simulation *out)
+{
+    RITZ_OWN(ritz_motion) motion = {0};
+    RITZ_OWN(ritz_march) march = {.step = request->step};
+    RITZ_OWN(ritz_simulation) s = {0};
+
+    RITZ_CHECK(check_request(subject, terms, request));
+    RITZ_CHECK(ritz_motion_dense(subject, false, &motion));
+    RITZ_REFUSE_IF(motion.to.val, RITZ_ERR_ARGUMENT,
+                   "a motion has no mass, which a spin does not take");
+    motion.energies = true;
+    RITZ_CHECK(start_spun(terms, rate, subject.dense.io, &motion, &march));
+    RITZ_CHECK(ritz_march_run(&march, request, NULL, &s));
+    RITZ_CHECK(ritz_simulation_label(subject, &s));
+    RITZ_MOVE(*out, s);
+    return RITZ_OK;
+}
