@@ -25,6 +25,7 @@ static ritz_status system_of(cli_run *run, const ritz_scene *scene,
     RITZ_CHECK(ritz_assemble(&stage, given->at, &made.system));
     RITZ_CHECK(model_write_bodies(run, given->prefix, scene, stage.body));
     RITZ_CHECK(describe_output(run, &made));
+    RITZ_CHECK(spin_say(run, &stage, &made.system.configuration[0]));
     describe_remarks(run, scene, stage.body);
     RITZ_CHECK(tracks_report(run, &stage, &made.system, given->tracks));
     cli_record(run, "assemble", made.system.configuration[0].K.nrow);
@@ -51,6 +52,12 @@ static ritz_status assemble_scene(cli_run *run, const assemble_options *given)
     RITZ_OWN(ritz_scene) scene = {0};
 
     RITZ_CHECK(model_scene(run, run->operand[0], &scene));
+    RITZ_REFUSE_IF(scene.spin.given &&
+                       scene.spin.rate.course != RITZ_SPIN_CONSTANT,
+                   RITZ_ERR_ARGUMENT,
+                   "%s:%ld:%ld: a rate of spin that changes is for "
+                   "ritz-simulate; a system has one 'rate'",
+                   scene.path, scene.spin.line, scene.spin.column);
     return given->full ? full_of(run, &scene, given->at)
                        : system_of(run, &scene, given);
 }

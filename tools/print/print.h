@@ -433,4 +433,13 @@ ritz_status checksum_sparse(cli_run *run, const char *name,
 ritz_status tracks_report(cli_run *run, const ritz_stage *stage,
                           const ritz_system *system, const char *path);
 
+/**
+ * What a scene that spins leaves out, and the rates that limit it; nothing of
+ * another scene.
+ *
+ * @param[in] at  a system of the stage
+ */
+ritz_status spin_say(cli_run *run, const ritz_stage *stage,
+                     const ritz_configuration *at);
+
 #endif

@@ -237,6 +237,20 @@ static ritz_status simulate_model(simulation_task *d,
     return warn_of_damping(d->run, d->subject, request);
 }
 
+/* A rate of spin that changes makes a run of its own. */
+static ritz_status check_spin(const simulation_options *given,
+                              const simulation_kind *kind)
+{
+    RITZ_REFUSE_IF(kind, RITZ_ERR_ARGUMENT,
+                   "the rate of spin of this scene changes, which %s does not "
+                   "take",
+                   kind->option);
+    RITZ_REFUSE_IF(given->step == 0.0, RITZ_ERR_ARGUMENT,
+                   "a rate of spin that changes needs --step: no step is "
+                   "chosen by an accuracy");
+    return RITZ_OK;
+}
+
 static ritz_status simulate_response(simulation_task *d)
 {
     cli_run *run = d->run;
@@ -258,7 +272,8 @@ static ritz_status simulate_response(simulation_task *d)
     ritz_simulation *s = &made.simulation;
     const simulation_kind *kind = NULL;
 
-    RITZ_REFUSE_IF(given->input.count == 0 && !given->initial,
+    RITZ_REFUSE_IF(given->input.count == 0 && !given->initial &&
+                       !simulation_spins(d),
                    RITZ_ERR_ARGUMENT,
                    "nothing moves it: give --input NAME=SIGNAL or --initial");
     RITZ_CHECK(find_kind(given, &kind));
@@ -267,8 +282,13 @@ static ritz_status simulate_response(simulation_task *d)
                    kind->option);
     if (kind && kind->prepare)
         RITZ_CHECK_IN(kind->option, kind->prepare(d));
+    if (simulation_spins(d))
+        RITZ_CHECK(check_spin(given, kind));
     RITZ_CHECK(simulation_long_run(d, &request,
-                                   kind ? kind->simulate : simulate_model, s));
+                                   kind                  ? kind->simulate
+                                   : simulation_spins(d) ? simulation_spin
+                                                         : simulate_model,
+                                   s));
     RITZ_CHECK(describe_output(run, &made));
     if (given->step == 0.0)
         sink_field(run, "accurate to", "error",
@@ -304,7 +324,7 @@ static ritz_status read_scene(simulation_task *d)
     RITZ_CHECK(ritz_stage_new(&d->scene, &d->stage));
     RITZ_CHECK(ritz_assemble(&d->stage, at, &d->m.system));
     d->m.kind = MODEL_SYSTEM;
-    return RITZ_OK;
+    return spin_say(d->run, &d->stage, &d->m.system.configuration[0]);
 }
 
 static ritz_status read_subject(simulation_task *d)

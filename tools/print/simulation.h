@@ -63,6 +63,9 @@ ritz_status simulation_long_run(simulation_task *task,
 bool simulation_switched_asked(const simulation_options *given);
 ritz_status simulation_switched_prepare(simulation_task *task);
 simulation_function simulation_switched;
+/** Whether the rate of spin of the scene changes, and a run of it. */
+bool simulation_spins(const simulation_task *task);
+simulation_function simulation_spin;
 
 /** Say what each integrator costs at the step that it needs. */
 ritz_status simulation_say_costs(simulation_task *d, const double band_hz[2]);

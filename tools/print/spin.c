@@ -1,0 +1,115 @@
+/* What ritz-assemble and ritz-simulate say of a scene that spins. */
+#include "print/print.h"
+
+#include "base/tolerances.h"
+#include "model/inertia_terms.h"
+
+#include <math.h>
+
+/* Relative change of a frequency that is negligible. */
+static const double negligible = 1e-3;
+
+/* What a spin model leaves out [PadillaVonFlotow1992]. */
+static void warn_of_model(cli_run *run, ritz_spin_model kept)
+{
+    if (kept == RITZ_SPIN_INCONSISTENT)
+        cli_warn(run, "spin model 'inconsistent' leaves out geometric "
+                      "stiffness (KG) and keeps softening: frequencies are too "
+                      "low, and a rate at which the structure is stable may "
+                      "make it unstable");
+    if (kept == RITZ_SPIN_RUTHLESS)
+        cli_warn(run, "spin model 'ruthless' leaves out gyroscopic, softening "
+                      "and stiffening terms: loads of the spin act on the "
+                      "structure at rest");
+}
+
+/* A consistent model needs a KG for each product of rates. */
+static void warn_of_lacks(cli_run *run, const ritz_stage *stage,
+                          const ritz_configuration *at)
+{
+    for (int64_t k = 0; k < stage->count; k++) {
+        const int lack = ritz_stage_spin_lacks(stage, at, k);
+
+        if (lack < RITZ_NUM_STIFFENINGS)
+            cli_warn(run,
+                     "component '%s' has no 'stiffening: {%s: LOAD}': its "
+                     "geometric stiffness is left out, as an inconsistent "
+                     "model does",
+                     stage->scene->component[k].name,
+                     ritz_stiffening_word[lack]);
+    }
+}
+
+/* Invariants may be approximate. */
+static ritz_status warn_of_loss(cli_run *run, const ritz_stage *stage)
+{
+    for (int64_t k = 0; k < stage->count; k++) {
+        const ritz_reduced *body = &stage->body[k];
+        ritz_inertia_loss loss = {0};
+
+        RITZ_CHECK(
+            ritz_inertia_loss_of(&body->invariants, &body->K, &body->M, &loss));
+        if (loss.value > RITZ_ENERGY_LOST)
+            cli_warn(run,
+                     "component '%s': spin terms are approximate: mode %ld "
+                     "loses %.1g of its kinetic energy",
+                     stage->scene->component[k].name, loss.mode + 1,
+                     loss.value);
+    }
+    return RITZ_OK;
+}
+
+/* The largest |rate| of a course. */
+static double highest_rate(const ritz_spin_rate *rate)
+{
+    double most = 0.0;
+
+    for (int64_t k = 0; k < rate->count; k++)
+        most = fmax(most, fabs(rate->value[k]));
+    return most;
+}
+
+static ritz_status say_limits(cli_run *run, const ritz_stage *stage,
+                              const double *setting)
+{
+    const ritz_scene_spin *spin = &stage->scene->spin;
+    const double most = highest_rate(&spin->rate);
+    ritz_spin_limits limits = {0};
+
+    RITZ_CHECK(ritz_stage_spin_limits(stage, setting, negligible, &limits));
+    if (isfinite(limits.negligible))
+        sink_field(run, "stiffening", "stiffening_negligible_rate",
+                   "may be left out up to %.6g rad/s: frequencies change by at "
+                   "most 0.001",
+                   limits.negligible);
+    if (isfinite(limits.stable))
+        sink_field(run, "stiffness", "stable_rate",
+                   "positive definite up to %.6g rad/s", limits.stable);
+    if (most >= limits.stable)
+        cli_warn(run,
+                 "spin of %.6g rad/s is above %.6g rad/s, where the stiffness "
+                 "of the %s model stops being positive definite: its motion "
+                 "diverges%s",
+                 most, limits.stable, ritz_spin_model_name(spin->model),
+                 spin->model == RITZ_SPIN_INCONSISTENT
+                     ? ", for want of geometric stiffness"
+                     : "");
+    return RITZ_OK;
+}
+
+ritz_status spin_say(cli_run *run, const ritz_stage *stage,
+                     const ritz_configuration *at)
+{
+    const ritz_scene_spin *spin = &stage->scene->spin;
+
+    if (!spin->given)
+        return RITZ_OK;
+    sink_field(run, "spin", "spin_rate,spin_model",
+               "up to %.6g rad/s about its axis, %s", highest_rate(&spin->rate),
+               ritz_spin_model_name(spin->model));
+    warn_of_model(run, spin->model);
+    if (spin->model == RITZ_SPIN_CONSISTENT)
+        warn_of_lacks(run, stage, at);
+    RITZ_CHECK(warn_of_loss(run, stage));
+    return say_limits(run, stage, at->setting);
+}
