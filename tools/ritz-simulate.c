@@ -46,6 +46,70 @@ static const cli_program program = {
     .threads = true,
 };
 
+/* A controller that is joined to the model. */
+#define LOOP_OPTIONS_IN_TIME(it)                                               \
+    CLI_TEXT("controller", &(it)->loops.controller, "FILE",                    \
+             "close a loop with this state space"),                            \
+        CLI_LIST("connect", &(it)->loops.connect, "OUT=IN",                    \
+                 "join signals of plant and controller by these names"),       \
+        CLI_WORD("feedback", &(it)->loops.feedback, "negative|positive",       \
+                 "sign with which the loop is closed [negative]"),             \
+        CLI_WORD(                                                              \
+            "loop", &(it)->way, "split|exact",                                 \
+            "propagate plant and controller by turns, or together by one "     \
+            "exponential [split]"),                                            \
+        CLI_REAL("sample", &(it)->sample, "T", 1e-12, 1e12,                    \
+                 "seconds between samples of the controller [it is "           \
+                 "continuous]"),                                               \
+        CLI_REAL("delay", &(it)->delay, "T", 0.0, 1e12,                        \
+                 "seconds from a sample until the controller acts [0]"),       \
+        CLI_FLAG(                                                              \
+            "discrete", &(it)->discrete,                                       \
+            "A and B of the controller lead from one sample to the next"),     \
+        CLI_FLAG("force", &(it)->loops.force,                                  \
+                 "also a loop that is unstable itself")
+
+/* Joints of a scene that hold by forces. */
+#define CONSTRAINT_OPTIONS(it)                                                 \
+    CLI_TEXT("constraints", &(it)->constraints, "METHOD[:NAME=VALUE,...]",     \
+             "of a scene: joints hold by forces over time, not by "            \
+             "elimination; one of --list"),                                    \
+        CLI_INT("start-digits", &(it)->start_digits, "N", 1, 17,               \
+                "with --constraints, round the bodies' initial values to N "   \
+                "digits, as a file has them")
+
+/* Reduced models that are switched in time. */
+#define SWITCHING_OPTIONS(it)                                                  \
+    CLI_TEXT("switched", &(it)->switched, "LIBRARY[,LIBRARY]",                 \
+             "reduced models switched in time: bases, matrices of any "        \
+             "foreign file, or modes[:K]"),                                    \
+        CLI_REAL("switch-interval", &(it)->switch_interval, "T", 1e-12, 1e12,  \
+                 "seconds from one switch to the next, whole steps"),          \
+        CLI_REAL("indicator", &(it)->indicator, "E", 1e-6, 1.0 - 1e-9,         \
+                 "vectors are added until their share of the residual is "     \
+                 "above E"),                                                   \
+        CLI_WORD(                                                              \
+            "share-of", &(it)->share_of, "model|library",                      \
+            "that share is of the whole residual, or of what the library "     \
+            "captures of it"),                                                 \
+        CLI_FLAG(                                                              \
+            "look-ahead", &(it)->look_ahead,                                   \
+            "take the inputs at the end of a switch interval into account "    \
+            "too"),                                                            \
+        CLI_WORD("inner", &(it)->inner, "mass|euclidean",                      \
+                 "product in which vectors are orthogonal and shares are "     \
+                 "measured"),                                                  \
+        CLI_WORD(                                                              \
+            "jump", &(it)->jump, "offset|project",                             \
+            "what lies beside the set at a switch stays as it was, or is "     \
+            "lost"),                                                           \
+        CLI_REAL("hysteresis", &(it)->hysteresis, "H", 0.0, 0.99,              \
+                 "a vector that is used counts 1 + H times"),                  \
+        CLI_REAL("dwell", &(it)->dwell, "T", 0.0, 1e12,                        \
+                 "seconds that a set is kept at least [one interval]"),        \
+        CLI_FLAG("redundant", &(it)->redundant,                                \
+                 "vectors of the library may depend on each other")
+
 int main(int argc, char **argv)
 {
     simulation_options given = {.method = "modal",
@@ -62,6 +126,9 @@ int main(int argc, char **argv)
                  "duration of the simulation, seconds"),
         CLI_REAL("step", &given.step, "H", 1e-15, 1e12,
                  "time step in seconds [chosen by --accuracy]"),
+        CLI_FLAG("any-step", &given.any_step,
+                 "accept a step at which constraints or a split loop are not "
+                 "stable, to see it fail"),
         CLI_REAL("accuracy", &given.accuracy, "X", 1e-12, 1.0,
                  "halve the step until outputs are within X of their "
                  "largest [1e-3]"),
@@ -83,44 +150,12 @@ int main(int argc, char **argv)
         CLI_FLAG("coordinates", &given.coordinates,
                  "store the coordinates of a reduced component or system too, "
                  "for ritz-recover"),
+        LOOP_OPTIONS_IN_TIME(&given),
+        CONSTRAINT_OPTIONS(&given),
+        SWITCHING_OPTIONS(&given),
         CLI_TEXT("checkpoint", &given.checkpoint, "FILE",
                  "keep what is done in FILE every half minute or so; the same "
                  "command continues from it"),
-        CLI_TEXT("constraints", &given.constraints, "METHOD[:NAME=VALUE,...]",
-                 "of a scene: joints hold by forces over time, not by "
-                 "elimination; one of --list"),
-        CLI_INT("start-digits", &given.start_digits, "N", 1, 17,
-                "with --constraints, round the bodies' initial values to N "
-                "digits, as a file has them"),
-        CLI_FLAG("any-step", &given.any_step,
-                 "with --constraints, accept a step that is not stable, to see "
-                 "it fail"),
-        CLI_TEXT("switched", &given.switched, "LIBRARY[,LIBRARY]",
-                 "reduced models switched in time: bases, matrices of any "
-                 "foreign file, or modes[:K]"),
-        CLI_REAL("switch-interval", &given.switch_interval, "T", 1e-12, 1e12,
-                 "seconds from one switch to the next, whole steps"),
-        CLI_REAL("indicator", &given.indicator, "E", 1e-6, 1.0 - 1e-9,
-                 "vectors are added until their share of the residual is "
-                 "above E"),
-        CLI_WORD("share-of", &given.share_of, "model|library",
-                 "that share is of the whole residual, or of what the library "
-                 "captures of it"),
-        CLI_FLAG("look-ahead", &given.look_ahead,
-                 "take the inputs at the end of a switch interval into account "
-                 "too"),
-        CLI_WORD("inner", &given.inner, "mass|euclidean",
-                 "product in which vectors are orthogonal and shares are "
-                 "measured"),
-        CLI_WORD("jump", &given.jump, "offset|project",
-                 "what lies beside the set at a switch stays as it was, or is "
-                 "lost"),
-        CLI_REAL("hysteresis", &given.hysteresis, "H", 0.0, 0.99,
-                 "a vector that is used counts 1 + H times"),
-        CLI_REAL("dwell", &given.dwell, "T", 0.0, 1e12,
-                 "seconds that a set is kept at least [one interval]"),
-        CLI_FLAG("redundant", &given.redundant,
-                 "vectors of the library may depend on each other"),
         CLI_FLAG("cost", &given.cost,
                  "report what a simulated second costs, by each integrator"),
         CLI_PAIR("band-hz", given.band_hz, "F,F",

@@ -9,6 +9,7 @@
 #include <ritz/component.h>
 #include <ritz/constrained.h>
 #include <ritz/container.h>
+#include <ritz/controlled.h>
 #include <ritz/export.h>
 #include <ritz/fit.h>
 #include <ritz/import.h>

@@ -793,6 +793,17 @@
 #define RITZ_GAIN_LEAST 0.1
 /* More steps are a mistake in a step or an end. */
 #define RITZ_MOST_STEPS 1e10
+/* The step at which a split loop becomes unstable is bracketed by steps of this
+   ratio and then bisected to this part of it: some 40 spectral radii in all. */
+#define RITZ_STEP_RATIO 1.5
+#define RITZ_STEP_FOUND 1e-4
+/* A map of more numbers than 160 is applied to a vector so often, four times;
+   from the first half to the second growth by powers of the count halves its
+   rate, exponential growth does not. A rate below 1e-6 a step is not told from
+   that of no growth. */
+#define RITZ_GROWTH_MAPS  500
+#define RITZ_GROWTH_LEAST 1e-6
+#define RITZ_GROWTH_KEPT  0.75
 /* A step that ends within this part of itself of the end, ends there. */
 #define RITZ_STEP_ROUNDING 1e-6
 

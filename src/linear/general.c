@@ -644,29 +644,32 @@ static ritz_status propagate_doubling(ritz_dense *A, double h, int count,
     return RITZ_OK;
 }
 
+RITZ_ARRAY_OF(ritz_dense);
+
 ritz_status ritz_exponential(const ritz_dense *A, double h, int count,
                              const ritz_dense *Q, ritz_dense *E, ritz_dense *W)
 {
-    RITZ_OWN(ritz_dense_pair) form = {0};
-    RITZ_OWN(ritz_dense_pair) whole = {0};
+    RITZ_OWN(ritz_dense_array) form = {.count = count};
+    RITZ_OWN(ritz_dense_array) whole = {.count = count};
     RITZ_OWN(ritz_dense) scaled = {0};
     RITZ_OWN(ritz_dense) made = {0};
     RITZ_OWN_ARRAY double *d = NULL;
 
-    RITZ_REFUSE_IF(count > 2, RITZ_ERR_ARGUMENT, "two forms at most");
+    RITZ_CHECK_NEW(form.at, count);
+    RITZ_CHECK_NEW(whole.at, count);
     RITZ_CHECK_NEW(d, A->nrow);
     RITZ_CHECK(ritz_dense_copy(A, &scaled));
     if (A->nrow > 0)
         RITZ_CHECK(balance_matrix(&scaled, d));
     for (int k = 0; k < count; k++) {
-        RITZ_CHECK(ritz_dense_copy(&Q[k], &form[k]));
-        turn_matrix(d, 1, 1, &form[k]);
+        RITZ_CHECK(ritz_dense_copy(&Q[k], &form.at[k]));
+        turn_matrix(d, 1, 1, &form.at[k]);
     }
-    RITZ_CHECK(propagate_doubling(&scaled, h, count, form, &made, whole));
+    RITZ_CHECK(propagate_doubling(&scaled, h, count, form.at, &made, whole.at));
     turn_matrix(d, 1, -1, &made);
     for (int k = 0; k < count; k++) {
-        turn_matrix(d, -1, -1, &whole[k]);
-        RITZ_MOVE(W[k], whole[k]);
+        turn_matrix(d, -1, -1, &whole.at[k]);
+        RITZ_MOVE(W[k], whole.at[k]);
     }
     RITZ_MOVE(*E, made);
     return RITZ_OK;

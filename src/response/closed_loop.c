@@ -11,6 +11,7 @@
  */
 #include "base/alloc.h"
 #include "linear/general.h"
+#include "response/loop.h"
 
 #include <ritz/response.h>
 
@@ -58,30 +59,43 @@ static ritz_status multiply_q(double sign, const ritz_dense *D_yu,
     return status;
 }
 
-/* e and v as linear functions of [x; w; r], one row each. */
-static ritz_status find_signals(const ritz_state_space *p,
-                                const ritz_state_space *c,
-                                const ritz_loop *loop, ritz_dense *e,
-                                ritz_dense *v)
+ritz_status ritz_loop_measured(const ritz_dense *C, const ritz_dense *D,
+                               const ritz_state_space *controller,
+                               const ritz_loop *loop, ritz_dense *e)
 {
+    const ritz_state_space *c = controller;
     double sign = loop->positive ? 1.0 : -1.0;
-    int64_t n = p->A.nrow, width = n + c->A.nrow + p->num_inputs;
+    int64_t n = C->ncol, m = c->A.nrow;
     RITZ_OWN(ritz_dense) C_y = {0}, D_y = {0}, D_yu = {0}, DC = {0};
 
-    RITZ_CHECK(
-        ritz_dense_rows(&p->C, loop->num_measured, loop->measured, &C_y));
-    RITZ_CHECK(
-        ritz_dense_rows(&p->D, loop->num_measured, loop->measured, &D_y));
+    RITZ_CHECK(ritz_dense_rows(C, loop->num_measured, loop->measured, &C_y));
+    RITZ_CHECK(ritz_dense_rows(D, loop->num_measured, loop->measured, &D_y));
     RITZ_CHECK(ritz_dense_pick(&D_y, loop->num_driven, loop->driven, &D_yu));
     RITZ_CHECK(ritz_dense_mul(&D_yu, &c->C, &DC));
-    RITZ_CHECK(ritz_dense_new(loop->num_measured, width, e));
+    RITZ_CHECK(ritz_dense_new(loop->num_measured, n + m + D->ncol, e));
     add_block(1.0, &C_y, 0, 0, e);
     add_block(sign, &DC, 0, n, e);
-    add_block(1.0, &D_y, 0, n + c->A.nrow, e);
-    RITZ_CHECK(multiply_q(sign, &D_yu, &c->D, e));
-    RITZ_CHECK(ritz_dense_mul(&c->D, e, v));
-    add_block(1.0, &c->C, 0, n, v);
+    add_block(1.0, &D_y, 0, n + m, e);
+    return multiply_q(sign, &D_yu, &c->D, e);
+}
+
+/* v = C_c w + D_c e, [w; r] behind the plant's n states. */
+static ritz_status find_output(int64_t n, const ritz_state_space *controller,
+                               const ritz_dense *e, ritz_dense *v)
+{
+    RITZ_CHECK(ritz_dense_mul(&controller->D, e, v));
+    add_block(1.0, &controller->C, 0, n, v);
     return RITZ_OK;
+}
+
+ritz_status ritz_loop_output(const ritz_dense *C, const ritz_dense *D,
+                             const ritz_state_space *controller,
+                             const ritz_loop *loop, ritz_dense *v)
+{
+    RITZ_OWN(ritz_dense) e = {0};
+
+    RITZ_CHECK(ritz_loop_measured(C, D, controller, loop, &e));
+    return find_output(C->ncol, controller, &e, v);
 }
 
 /* [A B] of plant and controller, their own terms and those that couple them. */
@@ -160,7 +174,8 @@ ritz_status ritz_closed_loop(const ritz_state_space *plant,
     int64_t states = plant->A.nrow + controller->A.nrow;
 
     RITZ_CHECK(ritz_loop_check(loop, &plant_io, &controller_io));
-    RITZ_CHECK(find_signals(plant, controller, loop, &e, &v));
+    RITZ_CHECK(ritz_loop_measured(&plant->C, &plant->D, controller, loop, &e));
+    RITZ_CHECK(find_output(plant->A.nrow, controller, &e, &v));
     RITZ_CHECK(
         fill_first_order(plant, controller, loop, &e, &v, &rates, &seen));
     RITZ_CHECK(name_signals(plant, controller, &made));

@@ -65,32 +65,42 @@ static ritz_status part_outputs(int64_t own, int64_t n, ritz_simulation *s)
     return RITZ_OK;
 }
 
-static ritz_status add_coordinates(ritz_model subject,
-                                   const ritz_simulation_request *request,
-                                   ritz_simulation *out)
+ritz_status ritz_simulate_coordinates(ritz_model subject,
+                                      const ritz_simulation_request *request,
+                                      ritz_run_function *run,
+                                      const void *context, ritz_simulation *out)
 {
     RITZ_OWN(ritz_io) io = {0};
     RITZ_OWN(ritz_simulation) s = {0};
     const ritz_io *own = NULL;
     int64_t n = 0;
 
+    if (!request->coordinates)
+        return run(subject, request, context, out);
     RITZ_REFUSE_IF(subject.kind != RITZ_MODEL_DENSE, RITZ_ERR_ARGUMENT,
                    "coordinates are of reduced components and systems");
     own = subject.dense.io;
     n = ritz_model_order(subject);
     RITZ_CHECK(extend_outputs(own, n, &io));
     subject.dense.io = &io;
-    RITZ_CHECK(ritz_simulate_noting(subject, request, true, NULL, &s));
+    RITZ_CHECK(run(subject, request, context, &s));
     RITZ_CHECK(part_outputs(own->num_outputs, n, &s));
     RITZ_MOVE(*out, s);
     return RITZ_OK;
+}
+
+/* A run of one linear model. */
+static ritz_status run_model(ritz_model subject,
+                             const ritz_simulation_request *request,
+                             const void *context, ritz_simulation *out)
+{
+    (void)context;
+    return ritz_simulate_noting(subject, request, true, NULL, out);
 }
 
 ritz_status ritz_simulate(ritz_model subject,
                           const ritz_simulation_request *request,
                           ritz_simulation *out)
 {
-    return request->coordinates
-               ? add_coordinates(subject, request, out)
-               : ritz_simulate_noting(subject, request, true, NULL, out);
+    return ritz_simulate_coordinates(subject, request, run_model, NULL, out);
 }

@@ -234,6 +234,22 @@ ritz_status ritz_simulate_noting(ritz_model subject,
                                  bool energies, ritz_reach *reach,
                                  ritz_simulation *out);
 
+/** A run of a model, which may be given more outputs than it has. */
+typedef ritz_status ritz_run_function(ritz_model subject,
+                                      const ritz_simulation_request *request,
+                                      const void *context,
+                                      ritz_simulation *out);
+
+/**
+ * Run and, if the request asks for coordinates, let them be outputs of the run,
+ * behind the model's own, and take them out of these.
+ */
+ritz_status ritz_simulate_coordinates(ritz_model subject,
+                                      const ritz_simulation_request *request,
+                                      ritz_run_function *run,
+                                      const void *context,
+                                      ritz_simulation *out);
+
 /** Largest |value| of an output, and its largest difference from another. */
 void ritz_simulation_compare(const ritz_simulation *exact,
                              const ritz_simulation *other, int64_t output,
@@ -247,6 +263,14 @@ void ritz_simulation_compare(const ritz_simulation *exact,
  */
 ritz_status ritz_states_start(const ritz_motion *motion, double step,
                               bool exact, ritz_march *out);
+
+/**
+ * x_1 = E x_0 + G u_0 + H (u_1 - u_0) of a state space, exactly.
+ *
+ * @param[out] H  NULL: not wanted
+ */
+ritz_status ritz_states_exact(const ritz_motion *motion, double step,
+                              ritz_dense *E, ritz_dense *G, ritz_dense *H);
 
 /*
  * One damped mode, q'' + d q' + lambda q = f, propagated exactly over h while f

@@ -59,12 +59,13 @@ static ritz_status take_block(const ritz_dense *A, int64_t n, int64_t first,
     return RITZ_OK;
 }
 
-static ritz_status fill_exact(const ritz_motion *motion, double step, states *s)
+ritz_status ritz_states_exact(const ritz_motion *motion, double step,
+                              ritz_dense *E, ritz_dense *G, ritz_dense *H)
 {
     int64_t n = motion->n;
     int64_t p = motion->B.ncol;
     double scale = fmax(ritz_dense_max(&motion->B), RITZ_LEAST_SCALE);
-    RITZ_OWN(ritz_dense) A = {0}, E = {0};
+    RITZ_OWN(ritz_dense) A = {0}, X = {0};
 
     RITZ_CHECK(ritz_dense_new(n + 2 * p, n + 2 * p, &A));
     ritz_dense_put(&motion->A, 0, 0, &A);
@@ -74,10 +75,10 @@ static ritz_status fill_exact(const ritz_motion *motion, double step, states *s)
                 ritz_dense_col(&motion->B, j)[i] / scale;
         ritz_dense_col(&A, n + p + j)[n + j] = 1.0 / step;
     }
-    RITZ_CHECK(ritz_exponential(&A, step, 0, NULL, &E, NULL));
-    RITZ_CHECK(take_block(&E, n, 0, n, 1.0, &s->E));
-    RITZ_CHECK(take_block(&E, n, n, p, scale, &s->G));
-    return take_block(&E, n, n + p, p, scale, &s->H);
+    RITZ_CHECK(ritz_exponential(&A, step, 0, NULL, &X, NULL));
+    RITZ_CHECK(take_block(&X, n, 0, n, 1.0, E));
+    RITZ_CHECK(take_block(&X, n, n, p, scale, G));
+    return H ? take_block(&X, n, n + p, p, scale, H) : RITZ_OK;
 }
 
 static ritz_status fill_trapezoidal(const ritz_motion *motion, double step,
@@ -111,6 +112,6 @@ ritz_status ritz_states_start(const ritz_motion *motion, double step,
     out->free = release_states;
     RITZ_CHECK_NEW(s->x, motion->n);
     RITZ_CHECK_NEW(s->rise, motion->B.ncol);
-    return exact ? fill_exact(motion, step, s)
+    return exact ? ritz_states_exact(motion, step, &s->E, &s->G, &s->H)
                  : fill_trapezoidal(motion, step, s);
 }

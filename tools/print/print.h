@@ -162,6 +162,14 @@ typedef struct loop_options {
     bool force;
 } loop_options;
 
+/** Join a controller to a plant, as options say, and say what is joined. */
+ritz_status loop_join(cli_run *run, const loop_options *given,
+                      const ritz_io *plant, const ritz_io *controller,
+                      ritz_loop *out);
+
+/** Say whether a loop is stable, and which pole decides. */
+void loop_say_stability(cli_run *run, const ritz_probe *probe);
+
 typedef struct response_options {
     double from_hz, to_hz, up_to_hz;
     double tolerance; /* between points; 0: a grid is enough */
@@ -353,6 +361,10 @@ typedef struct simulation_options {
     const char *inner, *jump, *share_of; /* words */
     double switch_interval, indicator, hysteresis, dwell;
     bool redundant, look_ahead;
+    loop_options loops;   /* of --controller */
+    const char *way;      /* of its propagation, "split" or "exact" */
+    double sample, delay; /* of a sampled controller, s; 0: it is none */
+    bool discrete;
     model_options model;
 } simulation_options;
 

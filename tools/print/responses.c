@@ -366,20 +366,7 @@ static ritz_status join_signals(cli_run *run, const loop_options *given,
     const ritz_io plant = ritz_model_io(model_reference(m)),
                   inner = ritz_model_io(model_reference(&out->controller));
 
-    RITZ_CHECK_IN(given->controller,
-                  ritz_loop_match(&plant, &inner, given->connect.count,
-                                  given->connect.text, &out->loop));
-    out->loop.positive =
-        given->feedback && strcmp(given->feedback, "positive") == 0;
-    cli_say(run, "loop with '%s', %s feedback:", given->controller,
-            out->loop.positive ? "positive" : "negative");
-    for (int64_t k = 0; k < out->loop.num_measured; k++)
-        cli_say(run, "  %s -> controller %s",
-                plant.output[out->loop.measured[k]], inner.input[k]);
-    for (int64_t k = 0; k < out->loop.num_driven; k++)
-        cli_say(run, "  controller %s -> %s", inner.output[k],
-                plant.input[out->loop.driven[k]]);
-    return RITZ_OK;
+    return loop_join(run, given, &plant, &inner, &out->loop);
 }
 
 /* An unstable loop has no steady response. */
@@ -388,12 +375,10 @@ static ritz_status say_stability(cli_run *run, const ritz_state_space *closed,
 {
     ritz_probe probe = {0};
     char text[2 * RITZ_NAME_SIZE];
-    const char *verdict = NULL;
 
     RITZ_CHECK(ritz_probe_states(closed, &probe));
     ritz_probe_print(&probe, text);
-    verdict = ritz_stability_name(probe.verdict);
-    sink_say(run, "stability", "the loop is %s: %s", verdict, text);
+    loop_say_stability(run, &probe);
     RITZ_REFUSE_IF(
         probe.verdict == RITZ_UNSTABLE && !force, RITZ_ERR_ARGUMENT,
         "the loop is unstable, %s: it has no steady response; compute "

@@ -25,6 +25,7 @@ static void take_options(const cli_run *run, simulation_options *given)
         cli_refuse(program, "--checkpoint needs --step");
     if (given->checkpoint && !run->output)
         cli_refuse(program, "--checkpoint needs -o");
+    simulation_check_loop(program, given);
     if (given->accuracy == 0.0)
         given->accuracy = 1e-3;
 }
@@ -161,6 +162,8 @@ static void simulation_task_free(simulation_task *d)
     RITZ_FREE(d->x0, d->v0, d->setting);
     RITZ_FREE_EACH(ritz_dense, d->num_libraries, d->library);
     model_free(&d->m);
+    model_free(&d->controller);
+    ritz_loop_free(&d->loop);
     ritz_stage_free(&d->stage);
     ritz_scene_free(&d->scene);
 }

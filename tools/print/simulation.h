@@ -18,9 +18,13 @@ typedef struct simulation_task {
     ritz_stage stage; /* of the scene: its bodies, reduced */
     double *setting;  /* of the scene's sweeps, as --at says */
     ritz_model subject;
-    ritz_io io;            /* of the subject, borrowed */
-    ritz_signal *signal;   /* of each input */
-    double *x0, *v0;       /* of the subject; NULL: at rest */
+    ritz_io io;          /* of the subject, borrowed */
+    ritz_signal *signal; /* of each input */
+    double *x0, *v0;     /* of the subject; NULL: at rest */
+    model controller;    /* of --controller */
+    ritz_loop loop;      /* of it with the subject */
+    bool told; /* what is said once of a loop was said: a run that is kept from
+                  time to time is carried out in parts */
     ritz_accuracy reached; /* of a run whose step was chosen by it */
     int64_t num_libraries; /* of --switched */
     ritz_dense *library;
@@ -45,6 +49,16 @@ extern const simulation_kind simulation_kinds[];
 
 /** The bodies of a scene, joined over time as --constraints says. */
 simulation_function simulation_constrained;
+
+/* A controller that is joined to the model. */
+bool simulation_is_controlled(const simulation_options *given);
+simulation_function simulation_controlled;
+ritz_status simulation_prepare_loop(simulation_task *task);
+
+/** End the program if options of a loop are given without its controller, or
+ * exclude each other. */
+void simulation_check_loop(const cli_program *program,
+                           const simulation_options *given);
 
 /**
  * Carry out a run, keep what is done in the checkpoint, if there is one, from

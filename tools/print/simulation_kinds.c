@@ -15,5 +15,9 @@ const simulation_kind simulation_kinds[] = {
      .asked = simulation_switched_asked,
      .simulate = simulation_switched,
      .prepare = simulation_switched_prepare},
+    {.option = "--controller",
+     .asked = simulation_is_controlled,
+     .simulate = simulation_controlled,
+     .prepare = simulation_prepare_loop},
     {0},
 };

@@ -1,0 +1,245 @@
+/*
+ * Whether a closed loop is stable, and whether it is as it is propagated: the
+ * poles of the continuous loop, and the spectral radius of the linear map from
+ * one step, or one sample, to the next. Of a small map the matrix is found
+ * column by column; a large one is applied to a vector until its growth shows.
+ */
+#include "base/alloc.h"
+#include "base/tolerances.h"
+#include "linear/general.h"
+#include "simulate/controlled.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Most numbers of a map whose eigenvalues are computed. */
+enum { MOST_MAPPED = 160 };
+
+/* How a loop is propagated, but for the step. */
+typedef struct scheme {
+    const ritz_simulation_request *request;
+    ritz_motion motion; /* as borrowed, without energies, at any step */
+    const ritz_controlled *controlled;
+} scheme;
+
+static ritz_status map_matrix(ritz_march *march, ritz_dense *out)
+{
+    const int64_t n = ritz_split_order(march);
+
+    RITZ_CHECK(ritz_dense_new(n, n, out));
+    for (int64_t j = 0; j < n; j++) {
+        ritz_dense_col(out, j)[j] = 1.0;
+        RITZ_CHECK(ritz_split_map(march, ritz_dense_col(out, j)));
+    }
+    return RITZ_OK;
+}
+
+static ritz_status radius_of_matrix(ritz_march *march, ritz_outlook *out)
+{
+    RITZ_OWN(ritz_dense) A = {0};
+    RITZ_OWN(ritz_eigenvalues) values = {0};
+
+    RITZ_CHECK(map_matrix(march, &A));
+    RITZ_CHECK(ritz_eigenvalues_of(&A, &values));
+    out->radius = values.radius;
+    out->grows = false;
+    for (int64_t k = 0; k < values.count; k++)
+        out->grows |= hypot(values.re[k], values.im[k]) >
+                      1.0 + RITZ_POLE_BOUND_FACTOR * values.error[k];
+    return RITZ_OK;
+}
+
+/* ln |map^count z| / |z|, z of length one before and after. */
+static ritz_status grow_vector(ritz_march *march, int64_t n, int count,
+                               double *z, double *out)
+{
+    double sum = 0.0;
+
+    for (int k = 0; k < count; k++) {
+        RITZ_CHECK(ritz_split_map(march, z));
+        sum += 0.5 * log(ritz_motion_dot(n, z, z));
+        if (!isfinite(sum) || !ritz_general_unit(n, z))
+            break;
+    }
+    *out = sum;
+    return RITZ_OK;
+}
+
+static ritz_status radius_of_growth(ritz_march *march, ritz_outlook *out)
+{
+    const int64_t n = ritz_split_order(march);
+    uint64_t seed = 1992;
+    double ignored = 0.0, first = 0.0, second = 0.0;
+    RITZ_OWN_ARRAY double *z = NULL;
+
+    RITZ_CHECK_NEW(z, n);
+    for (int64_t k = 0; k < n; k++)
+        z[k] = ritz_general_noise(&seed);
+    (void)ritz_general_unit(n, z);
+    RITZ_CHECK(grow_vector(march, n, RITZ_GROWTH_MAPS, z, &ignored));
+    RITZ_CHECK(grow_vector(march, n, RITZ_GROWTH_MAPS, z, &first));
+    RITZ_CHECK(grow_vector(march, n, 2 * RITZ_GROWTH_MAPS, z, &second));
+    first /= RITZ_GROWTH_MAPS;
+    second /= 2.0 * RITZ_GROWTH_MAPS;
+    out->estimated = true;
+    out->radius = exp(second);
+    out->grows = !isfinite(second) || (second > RITZ_GROWTH_LEAST &&
+                                       second > RITZ_GROWTH_KEPT * first);
+    return RITZ_OK;
+}
+
+static ritz_status find_radius(const scheme *by, double step, ritz_outlook *out)
+{
+    RITZ_OWN(ritz_march) march = {0};
+
+    RITZ_CHECK(ritz_split_start(&by->motion, by->controlled,
+                                by->request->integrator, step, by->request->rho,
+                                &march));
+    return ritz_split_order(&march) <= MOST_MAPPED
+               ? radius_of_matrix(&march, out)
+               : radius_of_growth(&march, out);
+}
+
+/* A stable and an unstable step; `high` is infinite if there is none up to the
+   whole run, `low` 0 if all are unstable. */
+static ritz_status bracket_limit(const scheme *by, const ritz_outlook *at,
+                                 double *low, double *high)
+{
+    enum { MOST_HALVES = 30 };
+    ritz_outlook now = *at;
+    double step = by->request->step;
+
+    *low = 0.0;
+    *high = HUGE_VAL;
+    for (int k = 0; at->grows && now.grows; k++) {
+        *high = step;
+        if (k == MOST_HALVES)
+            return RITZ_OK;
+        step *= 0.5;
+        RITZ_CHECK(find_radius(by, step, &now));
+    }
+    *low = step;
+    while (!now.grows && !at->grows) {
+        *low = step;
+        if (step > by->request->seconds)
+            return RITZ_OK;
+        step *= RITZ_STEP_RATIO;
+        RITZ_CHECK(find_radius(by, step, &now));
+        *high = now.grows ? step : *high;
+    }
+    return RITZ_OK;
+}
+
+static ritz_status find_limit(const scheme *by, ritz_outlook *out)
+{
+    double low = 0.0, high = 0.0;
+
+    RITZ_CHECK(bracket_limit(by, out, &low, &high));
+    while (low > 0.0 && isfinite(high) && high - low > RITZ_STEP_FOUND * high) {
+        const double middle = 0.5 * (low + high);
+        ritz_outlook now = {0};
+
+        RITZ_CHECK(find_radius(by, middle, &now));
+        if (now.grows)
+            high = middle;
+        else
+            low = middle;
+    }
+    out->limit = low > 0.0 ? high : 0.0;
+    return RITZ_OK;
+}
+
+/* Poles of the loop, if there are not too many. */
+static ritz_status probe_loop(ritz_model subject, const ritz_motion *motion,
+                              const ritz_controlled *controlled,
+                              ritz_outlook *out)
+{
+    const ritz_io io = ritz_model_io(subject);
+    const int64_t order = 2 * motion->n + controlled->controller->A.nrow;
+    RITZ_OWN(ritz_state_space) plant = {0}, closed = {0};
+
+    if (controlled->sample > 0.0 || controlled->delay > 0.0 ||
+        motion->form == RITZ_FORM_SPARSE || order > RITZ_LOOP_POLES)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_motion_states(motion, &io, &plant));
+    RITZ_CHECK(ritz_closed_loop(&plant, controlled->controller,
+                                controlled->loop, &closed));
+    RITZ_CHECK(ritz_probe_states(&closed, &out->loop));
+    out->known = true;
+    return RITZ_OK;
+}
+
+ritz_status ritz_controlled_examine(ritz_model subject,
+                                    const ritz_simulation_request *request,
+                                    const ritz_controlled *controlled,
+                                    ritz_outlook *out)
+{
+    ritz_outlook found = {.radius = nan(""), .limit = nan("")};
+    RITZ_OWN(ritz_motion) motion = {0};
+    scheme by = {.request = request, .controlled = controlled};
+
+    RITZ_CHECK(ritz_controlled_check(subject, request, controlled));
+    RITZ_CHECK(ritz_motion_new(subject, request, &motion));
+    RITZ_CHECK(probe_loop(subject, &motion, controlled, &found));
+    by.motion = motion; /* borrowed */
+    by.motion.energies = false;
+    by.motion.any_step = true;
+    if (!controlled->exact)
+        RITZ_CHECK(find_radius(&by, request->step, &found));
+    if (!controlled->exact && !(controlled->sample > 0.0) &&
+        !(controlled->delay > 0.0))
+        RITZ_CHECK(find_limit(&by, &found));
+    found.hides = found.known && found.loop.verdict == RITZ_UNSTABLE &&
+                  !controlled->exact && !found.grows;
+    *out = found;
+    return RITZ_OK;
+}
+
+static ritz_status refuse_step(double step, const ritz_outlook *seen)
+{
+    RITZ_REFUSE_IF(
+        seen->limit > 0.0, RITZ_ERR_ARGUMENT,
+        "a step of %g s makes the loop unstable, whose parts hold each other's "
+        "outputs: spectral radius %.8g; below %.5g s it is stable; take it all "
+        "the same with --any-step",
+        step, seen->radius, seen->limit);
+    return ritz_fail(
+        RITZ_ERR_ARGUMENT,
+        "a step of %g s makes the loop unstable, whose parts hold each other's "
+        "outputs: spectral radius %.8g, and no step is found at which it is "
+        "stable; take it all the same with --any-step",
+        step, seen->radius);
+}
+
+ritz_status ritz_controlled_refuse(const ritz_simulation_request *request,
+                                   const ritz_controlled *controlled,
+                                   const ritz_outlook *outlook)
+{
+    const bool unstable =
+        outlook->known && outlook->loop.verdict == RITZ_UNSTABLE;
+    char text[2 * RITZ_NAME_SIZE];
+
+    if (unstable)
+        ritz_probe_print(&outlook->loop, text);
+    RITZ_REFUSE_IF(unstable && !controlled->force && outlook->hides,
+                   RITZ_ERR_ARGUMENT,
+                   "the loop is unstable, %s, and a step of %g s would hide "
+                   "that; simulate it all the same with --force",
+                   text, request->step);
+    RITZ_REFUSE_IF(unstable && !controlled->force, RITZ_ERR_ARGUMENT,
+                   "the loop is unstable, %s: it grows without bound; simulate "
+                   "it all the same with --force",
+                   text);
+    RITZ_REFUSE_IF(controlled->sample > 0.0 && outlook->grows &&
+                       !controlled->force,
+                   RITZ_ERR_ARGUMENT,
+                   "the sampled loop is unstable, %.8g times more from one "
+                   "sample to the next; simulate it all the same with --force",
+                   outlook->radius);
+    if (controlled->sample > 0.0 || unstable || !outlook->grows ||
+        controlled->any_step)
+        return RITZ_OK;
+    return refuse_step(request->step, outlook);
+}

@@ -1,0 +1,123 @@
+/* Closed loops in time: what is joined, what is known of its stability, and the
+   step. */
+#include "print/simulation.h"
+
+#include <ritz/controlled.h>
+
+bool simulation_is_controlled(const simulation_options *given)
+{
+    return given->loops.controller != NULL;
+}
+
+void simulation_check_loop(const cli_program *program,
+                           const simulation_options *given)
+{
+    const loop_options *loop = &given->loops;
+
+    if (!loop->controller &&
+        (loop->connect.count > 0 || loop->feedback || loop->force ||
+         given->way || given->sample > 0.0 || given->delay > 0.0 ||
+         given->discrete))
+        cli_refuse(program, "--connect, --feedback, --loop, --sample, --delay, "
+                            "--discrete and --force say how a loop is closed: "
+                            "give its --controller");
+}
+
+/* The step below which the split is stable, and what is said of this one. */
+static void say_split(cli_run *run, const ritz_outlook *seen)
+{
+    sink_field(run, "one step", "spectral_radius", "spectral radius %.8g%s",
+               seen->radius,
+               seen->estimated ? ", by the growth of a vector" : "");
+    if (isnan(seen->limit))
+        return;
+    if (isinf(seen->limit))
+        cli_say(run, "stable as it is split: at all steps up to the whole run");
+    else if (seen->limit > 0.0)
+        sink_field(run, "stable below", "step_limit", "a step of %.5g s",
+                   seen->limit);
+    else
+        cli_say(run, "stable as it is split: at no step that was tried");
+}
+
+static void warn_of_growth(cli_run *run, double step, const ritz_outlook *seen)
+{
+    char text[2 * RITZ_NAME_SIZE];
+    const bool unstable = seen->known && seen->loop.verdict == RITZ_UNSTABLE;
+
+    if (unstable)
+        ritz_probe_print(&seen->loop, text);
+    if (seen->hides)
+        cli_warn(
+            run,
+            "the loop is unstable, %s, but not as it is propagated: a step "
+            "of %g s hides it (spectral radius %.8g), and what is written "
+            "is not the loop's motion",
+            text, step, seen->radius);
+    else if (unstable)
+        cli_warn(run, "the loop is unstable, %s: it grows without bound", text);
+    else if (seen->grows)
+        cli_warn(run, "it grows by %.8g from one step or sample to the next",
+                 seen->radius);
+}
+
+/* Once for each run: what is known of the loop, and whether it is run. */
+static ritz_status examine(simulation_task *d,
+                           const ritz_simulation_request *request,
+                           const ritz_controlled *controlled)
+{
+    cli_run *run = d->run;
+    ritz_outlook seen = {0};
+
+    RITZ_CHECK(ritz_controlled_examine(d->subject, request, controlled, &seen));
+    if (seen.known)
+        loop_say_stability(run, &seen.loop);
+    else if (!(controlled->sample > 0.0))
+        cli_say(run, "the loop itself: its poles are not known, as the plant "
+                     "is too large or the controller acts late");
+    if (!controlled->exact)
+        say_split(run, &seen);
+    RITZ_CHECK(ritz_controlled_refuse(request, controlled, &seen));
+    warn_of_growth(run, request->step, &seen);
+    return RITZ_OK;
+}
+
+ritz_status simulation_prepare_loop(simulation_task *d)
+{
+    const loop_options *given = &d->given->loops;
+    ritz_io inner = {0}; /* borrowed */
+
+    RITZ_CHECK(
+        model_read(d->run, given->controller, MODEL_STATES, &d->controller));
+    inner = ritz_model_io(model_reference(&d->controller));
+    return loop_join(d->run, given, &d->io, &inner, &d->loop);
+}
+
+ritz_status simulation_controlled(simulation_task *d,
+                                  const ritz_simulation_request *request,
+                                  ritz_simulation *out)
+{
+    static const ritz_outlook examined = {0};
+    const simulation_options *given = d->given;
+    ritz_simulation_request asked = *request;
+    const ritz_controlled controlled = {
+        .controller = &d->controller.states,
+        .loop = &d->loop,
+        .exact = given->way && strcmp(given->way, "exact") == 0,
+        .discrete = given->discrete,
+        .sample = given->sample,
+        .delay = given->delay,
+        .any_step = given->any_step,
+        .force = given->loops.force};
+
+    RITZ_CHECK(ritz_controlled_step(&controlled, request->step, &asked.step));
+    if (!d->told && asked.step < request->step)
+        cli_say(d->run,
+                "a step of %.8g s, of which sample and delay are multiples",
+                asked.step);
+    if (!d->told)
+        RITZ_CHECK(examine(d, &asked, &controlled));
+    d->told = true;
+    return ritz_simulate_controlled(d->subject, &asked, &controlled, &examined,
+                                    out);
+}
