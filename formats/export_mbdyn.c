@@ -50,7 +50,7 @@ static const char point_label[] = "inertia";
 typedef struct fem_file {
     ritz_floating body;
     ritz_point_masses points;
-    ritz_stiffening stiffening;
+    ritz_stiffening_terms stiffening;
     char *certificate;
 } fem_file;
 
@@ -58,7 +58,7 @@ static void fem_file_free(fem_file *fem)
 {
     ritz_floating_free(&fem->body);
     ritz_point_masses_free(&fem->points);
-    ritz_stiffening_free(&fem->stiffening);
+    ritz_stiffening_terms_free(&fem->stiffening);
     free(fem->certificate);
 }
 
@@ -156,7 +156,7 @@ static void print_matrix(FILE *file, int group, const char *title,
 }
 
 /* Tag of a term in group 19. */
-static int64_t find_tag(const ritz_stiffening *s,
+static int64_t find_tag(const ritz_stiffening_terms *s,
                         const ritz_stiffening_term *term)
 {
     int64_t node = 0;
@@ -169,7 +169,7 @@ static int64_t find_tag(const ritz_stiffening *s,
 }
 
 /* No comment may be within the group. */
-static void print_stiffening(FILE *file, const ritz_stiffening *s)
+static void print_stiffening(FILE *file, const ritz_stiffening_terms *s)
 {
     if (s->count == 0)
         return;
@@ -248,13 +248,13 @@ static ritz_status say_rotations(const ritz_floating *body,
 
 /* What group 19 asks of the joint. */
 static ritz_status say_stiffening(const ritz_reduced *reduced,
-                                  const ritz_stiffening *s,
+                                  const ritz_stiffening_terms *s,
                                   ritz_export_report *report)
 {
     char grids[128] = "";
     size_t used = 0;
 
-    RITZ_CHECK(ritz_stiffening_say(reduced, s, report));
+    RITZ_CHECK(ritz_stiffening_terms_say(reduced, s, report));
     if (s->count == 0)
         return RITZ_OK;
     RITZ_CHECK(ritz_export_say(
@@ -301,8 +301,8 @@ static ritz_status write_body(const ritz_export_object *object,
     RITZ_CHECK(ritz_floating_of(object->reduced, &frame, &fem.body));
     RITZ_CHECK(ritz_point_masses_of(&fem.body.inertia, &fem.body.invariants,
                                     &fem.body.M, &fem.points));
-    RITZ_CHECK(ritz_stiffening_of(object->reduced, &fem.body, &fem.body.U,
-                                  request->stiffening, &fem.stiffening));
+    RITZ_CHECK(ritz_stiffening_terms_of(object->reduced, &fem.body, &fem.body.U,
+                                        request->stiffening, &fem.stiffening));
     RITZ_CHECK(ritz_certificate(object, request->stamp, &fem.certificate));
     RITZ_CHECK(ritz_sink_write(request->output, print_file, &fem));
     RITZ_CHECK(ritz_floating_say(&fem.body, report));

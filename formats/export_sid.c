@@ -42,7 +42,7 @@ void sid_body_free(sid_body *body)
 {
     ritz_normal_body_free(&body->normal);
     ritz_sid_terms_free(&body->terms);
-    ritz_stiffening_free(&body->stiffening);
+    ritz_stiffening_terms_free(&body->stiffening);
     *body = (sid_body){0};
 }
 
@@ -91,8 +91,9 @@ ritz_status sid_body_of(const ritz_reduced *reduced,
     RITZ_CHECK(ritz_normal_body_of(reduced, &wanted, &b.normal));
     RITZ_CHECK(ritz_dense_identity(b.normal.num_modes, &unit));
     RITZ_CHECK(ritz_sid_terms_of(&b.normal.invariants, &unit, here, &b.terms));
-    RITZ_CHECK(ritz_stiffening_of(reduced, &b.normal.floating, &b.normal.U,
-                                  request->stiffening, &b.stiffening));
+    RITZ_CHECK(ritz_stiffening_terms_of(reduced, &b.normal.floating,
+                                        &b.normal.U, request->stiffening,
+                                        &b.stiffening));
     RITZ_CHECK(add_stiffening(&b));
     RITZ_MOVE(*out, b);
     return RITZ_OK;
@@ -231,7 +232,7 @@ static const double *pick_node(const ritz_dense *A, int64_t node, double *out)
 static const double *load_node(const sid_body *b, int64_t id, int first,
                                double *m1)
 {
-    const ritz_stiffening *s = &b->stiffening;
+    const ritz_stiffening_terms *s = &b->stiffening;
     const int64_t m = b->normal.num_modes;
     bool any = false;
 
@@ -437,7 +438,7 @@ static ritz_status say_losses(const ritz_reduced *reduced, const sid_body *b,
     const ritz_floating *f = &b->normal.floating;
 
     RITZ_CHECK(ritz_export_say(report, "17 digits, which keep every bit"));
-    RITZ_CHECK(ritz_stiffening_say(reduced, &b->stiffening, report));
+    RITZ_CHECK(ritz_stiffening_terms_say(reduced, &b->stiffening, report));
     RITZ_CHECK(ritz_export_say(
         report,
         "%sinputs, outputs and ports are left out; Gr and Ge do not change "

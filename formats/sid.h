@@ -9,7 +9,7 @@
 typedef struct sid_body {
     ritz_normal_body normal;
     ritz_sid_terms terms; /* with those of geometric stiffness */
-    ritz_stiffening stiffening;
+    ritz_stiffening_terms stiffening;
 } sid_body;
 
 /** Make the contents of the file. @return as ritz_normal_body_of */

@@ -22,11 +22,11 @@ static void ritz_stiffening_term_free(ritz_stiffening_term *term)
     *term = (ritz_stiffening_term){0};
 }
 
-void ritz_stiffening_free(ritz_stiffening *s)
+void ritz_stiffening_terms_free(ritz_stiffening_terms *s)
 {
     RITZ_FREE_EACH(ritz_stiffening_term, s->count, s->term);
     free(s->grid);
-    *s = (ritz_stiffening){0};
+    *s = (ritz_stiffening_terms){0};
 }
 
 void ritz_stiffening_name(const ritz_stiffening_term *term,
@@ -113,7 +113,7 @@ static ritz_status refuse_origin(const ritz_floating *body,
 /* "spin_zz=LOAD", or a load that is called as its term. */
 static ritz_status add_term(const ritz_reduced *reduced,
                             const ritz_floating *body, char *word,
-                            ritz_stiffening *s)
+                            ritz_stiffening_terms *s)
 {
     ritz_stiffening_term *term = &s->term[s->count];
     char *mark = strchr(word, '=');
@@ -133,7 +133,7 @@ static ritz_status add_term(const ritz_reduced *reduced,
     return RITZ_OK;
 }
 
-static void note_grid(ritz_stiffening *s, int64_t grid)
+static void note_grid(ritz_stiffening_terms *s, int64_t grid)
 {
     for (int64_t k = 0; k < s->num_grids; k++)
         if (s->grid[k] == grid)
@@ -141,11 +141,12 @@ static void note_grid(ritz_stiffening *s, int64_t grid)
     s->grid[s->num_grids++] = grid;
 }
 
-ritz_status ritz_stiffening_of(const ritz_reduced *reduced,
-                               const ritz_floating *body, const ritz_dense *U,
-                               const char *text, ritz_stiffening *out)
+ritz_status ritz_stiffening_terms_of(const ritz_reduced *reduced,
+                                     const ritz_floating *body,
+                                     const ritz_dense *U, const char *text,
+                                     ritz_stiffening_terms *out)
 {
-    RITZ_OWN(ritz_stiffening) s = {0};
+    RITZ_OWN(ritz_stiffening_terms) s = {0};
     RITZ_OWN_ARRAY char *words = NULL;
     int64_t most = 1;
 
@@ -176,7 +177,7 @@ ritz_status ritz_stiffening_of(const ritz_reduced *reduced,
 
 /* ---- the report --------------------------------------------------------- */
 
-static bool is_used(const ritz_stiffening *s, int64_t load)
+static bool is_used(const ritz_stiffening_terms *s, int64_t load)
 {
     for (int64_t k = 0; k < s->count; k++)
         if (s->term[k].load == load)
@@ -184,9 +185,9 @@ static bool is_used(const ritz_stiffening *s, int64_t load)
     return false;
 }
 
-ritz_status ritz_stiffening_say(const ritz_reduced *reduced,
-                                const ritz_stiffening *s,
-                                ritz_export_report *report)
+ritz_status ritz_stiffening_terms_say(const ritz_reduced *reduced,
+                                      const ritz_stiffening_terms *s,
+                                      ritz_export_report *report)
 {
     for (int64_t k = 0; k < s->count; k++) {
         char name[RITZ_NAME_SIZE];

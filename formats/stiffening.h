@@ -34,12 +34,12 @@ typedef struct ritz_stiffening_term {
     ritz_dense K0; /* m x m, KG in the modes */
 } ritz_stiffening_term;
 
-typedef struct ritz_stiffening {
+typedef struct ritz_stiffening_terms {
     int64_t count;
     ritz_stiffening_term *term;
     int64_t num_grids;
     int64_t *grid; /* of forces and moments, in the order of their first one */
-} ritz_stiffening;
+} ritz_stiffening_terms;
 
 /**
  * @param[in]  text  "spin_zz=LOAD,force_x@13=LOAD,accel_x", a term alone is that
@@ -48,19 +48,20 @@ typedef struct ritz_stiffening {
  * @return RITZ_ERR_ARGUMENT if there is no such term, load or grid, a term is
  *         named twice, or spin is about another point than the basic origin
  */
-ritz_status ritz_stiffening_of(const ritz_reduced *reduced,
-                               const ritz_floating *body, const ritz_dense *U,
-                               const char *text, ritz_stiffening *out);
+ritz_status ritz_stiffening_terms_of(const ritz_reduced *reduced,
+                                     const ritz_floating *body,
+                                     const ritz_dense *U, const char *text,
+                                     ritz_stiffening_terms *out);
 
 /** "force_x@13" */
 void ritz_stiffening_name(const ritz_stiffening_term *term,
                           char out[RITZ_NAME_SIZE]);
 
 /** Each term and its load, and the loads that are left out. */
-ritz_status ritz_stiffening_say(const ritz_reduced *reduced,
-                                const ritz_stiffening *stiffening,
-                                ritz_export_report *report);
+ritz_status ritz_stiffening_terms_say(const ritz_reduced *reduced,
+                                      const ritz_stiffening_terms *stiffening,
+                                      ritz_export_report *report);
 
-void ritz_stiffening_free(ritz_stiffening *stiffening);
+void ritz_stiffening_terms_free(ritz_stiffening_terms *stiffening);
 
 #endif

@@ -163,7 +163,7 @@ static void stiffening_is_negligible_below_its_rate(void **)
     assert_true(limits.stable > 100.0); /* of the rod, 157 */
     snprintf(text[0], 160, "spin: {axis: [0, 0, 1], rate: %.17g}\n",
              limits.negligible);
-    snprintf(text[1], sizeof text[1], "%sspin_model: inconsistent\n", text[0]);
+    snprintf(text[1], 200, "%.160sspin_model: inconsistent\n", text[0]);
     RITZ_OWN(ritz_configuration) with = {0}, without = {0};
     spin_blade(text[0], 0, &with);
     spin_blade(text[1], 0, &without);
