@@ -137,9 +137,9 @@ static ritz_status add_damping(const ritz_configuration *joined,
     return RITZ_OK;
 }
 
-ritz_status ritz_stage_unjoined(const ritz_stage *stage, const double *setting,
-                                const ritz_configuration *joined,
-                                const ritz_damping *damping, ritz_unjoined *out)
+static ritz_status take_apart(const ritz_stage *stage, const double *setting,
+                              const ritz_configuration *joined,
+                              const ritz_damping *damping, ritz_unjoined *out)
 {
     RITZ_OWN(ritz_unjoined) u = {.n = stage->num_coordinates};
     RITZ_OWN(ritz_springs) springs = {0};
@@ -160,4 +160,17 @@ ritz_status ritz_stage_unjoined(const ritz_stage *stage, const double *setting,
     RITZ_CHECK(add_damping(joined, damping, &u));
     RITZ_MOVE(*out, u);
     return RITZ_OK;
+}
+
+ritz_status ritz_stage_unjoined(const ritz_stage *stage, const double *setting,
+                                const ritz_configuration *joined,
+                                const ritz_damping *damping, ritz_unjoined *out)
+{
+    const ritz_scene_spin *spin = &stage->scene->spin;
+    RITZ_OWN(ritz_spun) spun = {0};
+
+    if (!spin->given || spin->rate.course != RITZ_SPIN_CONSTANT)
+        return take_apart(stage, setting, joined, damping, out);
+    RITZ_CHECK(ritz_stage_spun(stage, setting, &spun));
+    return take_apart(&spun.stage, setting, joined, damping, out);
 }

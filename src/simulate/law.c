@@ -80,7 +80,7 @@ static bool search_line(const ritz_stabiliser *s, ritz_law_step *l,
 {
     double part = 1.0, size = 0.0;
 
-    for (int k = 0; k < MOST_HALVINGS; k++, part *= 0.5) {
+    for (int k = 0; k < MOST_HALVINGS; k++) {
         for (int64_t i = 0; i < l->rank; i++)
             l->trial[i] = g[i] - part * l->change[i];
         if (find_residual(s, l, l->trial, false, &size) < residual) {
@@ -88,6 +88,7 @@ static bool search_line(const ritz_stabiliser *s, ritz_law_step *l,
                 g[i] = l->trial[i];
             return true;
         }
+        part *= 0.5;
     }
     return false;
 }

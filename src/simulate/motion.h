@@ -167,7 +167,7 @@ typedef struct ritz_newmark_weights {
 } ritz_newmark_weights;
 
 /** Of generalised-alpha. @return RITZ_ERR_ARGUMENT if rho is not in 0 to 1 */
-ritz_status ritz_generalised_alpha(double rho, ritz_newmark_weights *out);
+ritz_status ritz_generalised_alpha(double rho, ritz_newmark_weights *w);
 
 /** Processor time, s, of a step with inputs @p u: the least of several. */
 ritz_status ritz_march_cost(ritz_march *march, const double *u, double *out);

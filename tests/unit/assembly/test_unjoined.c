@@ -5,6 +5,7 @@
  */
 #include "testing.h"
 
+#include "blade.h"
 #include "bodies.h"
 #include "dualspin.h"
 #include "scenes.h"
@@ -169,6 +170,43 @@ static void a_spacecraft_comes_back_from_its_bodies(void **state)
     assert_true(u.D.val == NULL);
 }
 
+/* P'AP of an A that need not be symmetric. */
+static void project(const ritz_dense *A, const ritz_dense *P, ritz_dense *out)
+{
+    RITZ_OWN(ritz_dense) AP = {0};
+
+    assert_ok(ritz_dense_mul(A, P, &AP));
+    assert_ok(ritz_dense_mul_tn(P, &AP, out));
+}
+
+/* Centrifugal and gyroscopic terms are in K and D, the load is one more input. */
+static void a_spin_is_in_the_bodies(void **state)
+{
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_configuration) c = {0};
+    RITZ_OWN(ritz_unjoined) u = {0};
+    RITZ_OWN(ritz_dense) K = {0}, D = {0};
+
+    (void)state;
+    assert_ok(blade_stage(BLADE_SCENE "spin: {axis: [0, 0, 1], rate: 4}\n", 6,
+                          &scene, &stage));
+    assert_ok(ritz_stage_assemble(&stage, NULL, &c));
+    assert_ok(ritz_stage_unjoined(&stage, NULL, &c, NULL, &u));
+    assert_int_equal(u.num_rows, 0);
+    assert_int_equal(u.io.num_inputs, c.io.num_inputs);
+    assert_string_equal(u.io.input[u.io.num_inputs - 1], RITZ_SPIN_INPUT);
+    project(&u.K, &u.P, &K);
+    project(&u.D, &u.P, &D);
+    assert_true(ritz_dense_skew(&D) > 0.5);
+    for (int64_t k = 0; k < K.nrow * K.ncol; k++) {
+        const double top = c.lambda[K.ncol - 1];
+
+        assert_near(K.val[k], c.K.val[k], 1e3 * DBL_EPSILON * top);
+        assert_near(D.val[k], c.D.val[k], 1e3 * DBL_EPSILON * 8.0);
+    }
+}
+
 static void structural_damping_is_refused(void **state)
 {
     double setting[LINKS] = {0.0};
@@ -215,6 +253,7 @@ static void it_survives_every_allocation(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(loops_name_what_they_state_twice),
     cmocka_unit_test(a_spacecraft_comes_back_from_its_bodies),
+    cmocka_unit_test(a_spin_is_in_the_bodies),
     cmocka_unit_test(structural_damping_is_refused),
     cmocka_unit_test(it_survives_every_allocation),
 };
