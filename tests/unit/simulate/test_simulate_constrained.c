@@ -82,7 +82,7 @@ static double find_difference(const ritz_simulation *coarse,
    second order is measured below. */
 static void outputs_are_those_of_the_eliminated_system(void **state)
 {
-    /* SciPy's expm of the eliminated system: tests/oracles, at 0.5 s, 2 s */
+    /* SciPy's expm of the eliminated system: at 0.5 s, 2 s */
     static const double want[2][3] = {
         {4.836588567831849e-03, 8.609165189554535e-02, 1.080375455603823e-01},
         {1.680830281834361e-02, -7.802044461801852e-02,
@@ -131,6 +131,7 @@ static void assert_order(const joined *j, const char *text,
             asking(integrator, 0.01 / (double)(1 << k));
 
         request.rho = 0.5;
+        request.seconds = 0.25;
         assert_ok(run(j, text, &request, &made[k]));
     }
     for (int k = 0; k <= HALVINGS; k++) {
@@ -156,13 +157,14 @@ static void multipliers_converge_at_second_order(void **state)
     static const char *const names[] = {
         "none", "baumgarte:alpha=10,beta=10",
         "sliding-mode:surface=5,switch=1,layer=0.1", "projection", "index-2"};
-    const ritz_simulation_request request =
+    ritz_simulation_request request =
         asking(&ritz_integrator_modal, 0.01 / 32.0);
     RITZ_OWN(joined) j = {0};
     RITZ_OWN(ritz_simulation) exact = {0};
 
     (void)state;
     assert_ok(joined_new(true, &j));
+    request.seconds = 0.25;
     assert_ok(ritz_simulate(j.eliminated, &request, &exact));
     for (size_t m = 0; m < sizeof names / sizeof *names; m++)
         for (int i = 0; i < (m < 4 ? 3 : 1); i++)
@@ -187,8 +189,8 @@ static void penalties_converge_at_second_order(void **state)
    bodies joined by stiffer springs differ by as much again. */
 static void ten_times_the_stiffness_gives_a_tenth_of_the_violation(void **state)
 {
-    const ritz_simulation_request request =
-        asking(&ritz_integrator_trapezoidal, 1e-4);
+    ritz_simulation_request request =
+        asking(&ritz_integrator_trapezoidal, 2e-4);
     double last = 0.0;
     RITZ_OWN(joined) j = {0};
 
