@@ -215,6 +215,10 @@ ritz_status ritz_loads_reduce(int64_t count, const ritz_load *load,
 ritz_status ritz_loads_project(int64_t count, const ritz_reduced_load *load,
                                const ritz_dense *V, ritz_reduced_load **out);
 
+/** Average away an asymmetry up to 1e-6 of the largest entry, as that of the
+ * stiffness of a component is. @return RITZ_ERR_FORMAT if it is larger */
+ritz_status ritz_reduced_load_settle(ritz_reduced_load *load);
+
 void ritz_reduced_load_free(ritz_reduced_load *load);
 void ritz_nested_free(ritz_nested *nested);
 void ritz_invariants_free(ritz_invariants *invariants);

@@ -75,7 +75,13 @@ static const ritz_member load_members[] = {
     {0},
 };
 
-static const ritz_schema load_schema = {.members = load_members};
+static ritz_status settle_load(const ritz_place *place)
+{
+    return ritz_reduced_load_settle(place->target);
+}
+
+static const ritz_schema load_schema = {.members = load_members,
+                                        .settle = settle_load};
 
 static const ritz_member configuration_members[] = {
     {"at", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_configuration, at), "",

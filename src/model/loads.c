@@ -1,5 +1,6 @@
 /* Geometric stiffness of unit loads in other coordinates, u = T q: T'KG T. */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <ritz/model.h>
 
@@ -39,6 +40,19 @@ ritz_status ritz_loads_project(int64_t count, const ritz_reduced_load *load,
                      : ritz_dense_copy(&load[k].KG, &made.at[k].KG));
     }
     RITZ_MOVE(*out, made.at);
+    return RITZ_OK;
+}
+
+ritz_status ritz_reduced_load_settle(ritz_reduced_load *load)
+{
+    const double asymmetry = ritz_dense_asymmetry(&load->KG);
+
+    RITZ_REFUSE_IF(asymmetry > RITZ_SYMMETRIC_SOURCE, RITZ_ERR_FORMAT,
+                   "geometric stiffness is unsymmetric by %.1e of its largest "
+                   "entry, %.0e is let pass",
+                   asymmetry, RITZ_SYMMETRIC_SOURCE);
+    if (asymmetry > 0.0)
+        ritz_dense_symmetrise(&load->KG);
     return RITZ_OK;
 }
 

@@ -342,6 +342,33 @@ static void a_reduced_component_comes_back(void **)
     compare_reduced(false);
 }
 
+/* Geometric stiffness is symmetric, as the stiffness of a component: rounding
+   is averaged away, more is refused; so are values that are not finite. */
+static void unsymmetric_geometric_stiffness_is_refused(void **state)
+{
+    RITZ_OWN(ritz_reduced) a = {0}, b = {0};
+    double *first = NULL, largest = 0.0;
+
+    (void)state;
+    assert_ok(sample_reduced(true, &a));
+    largest = ritz_dense_max(&a.load[1].KG);
+    first = &a.load[1].KG.val[1];
+    *first += 4e-7 * largest;
+    assert_ok(ritz_container_write_reduced(path, &a, &stamp));
+    assert_ok(ritz_container_read_reduced(path, &b));
+    assert_true(ritz_dense_asymmetry(&b.load[1].KG) == 0.0);
+    assert_near(b.load[1].KG.val[1], *first - 2e-7 * largest, 1e-12 * largest);
+    *first += 0.1 * largest;
+    assert_ok(ritz_container_write_reduced(path, &a, &stamp));
+    assert_fails(ritz_container_read_reduced(path, &b), RITZ_ERR_FORMAT,
+                 "geometric stiffness is unsymmetric by");
+    assert_non_null(strstr(ritz_error_message(), "arm:load 1"));
+    *first = nan("");
+    assert_ok(ritz_container_write_reduced(path, &a, &stamp));
+    assert_fails(ritz_container_read_reduced(path, &b), RITZ_ERR_FORMAT,
+                 "not finite");
+}
+
 static void same_configuration(const ritz_configuration *a,
                                const ritz_configuration *b)
 {
@@ -686,6 +713,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_basis_comes_back),
     cmocka_unit_test(a_matrix_of_many_chunks_comes_back),
     cmocka_unit_test(a_reduced_component_comes_back),
+    cmocka_unit_test(unsymmetric_geometric_stiffness_is_refused),
     cmocka_unit_test(a_system_comes_back),
     cmocka_unit_test(a_response_comes_back),
     cmocka_unit_test(a_simulation_comes_back),
