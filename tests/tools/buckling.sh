@@ -37,6 +37,16 @@ expect 1 "there is no geometric stiffness of a load 'wind'" ritz-check \
     small.h5 --load wind=1
 expect 1 "'tip' is not of the form NAME=X" ritz-check small.h5 --load tip
 
+json 0 ritz-verify column.h5 small.h5 -o checked.h5
+holds '  factors of both models are compared' '
+    [b["load"] for b in j["buckling"]] == ["tip", "spin_zz"] and
+    abs(j["buckling"][0]["full"] - 2.4674021) < 5e-8 and
+    0 <= j["buckling"][0]["reduced"] - j["buckling"][0]["full"] < 1e-5 and
+    j["buckling"][0]["full_reversed"] is None and
+    abs(j["buckling"][1]["full_reversed"] + 10.243361021) < 1e-7'
+expect 0 "buckling factor of load 'tip': 2.4674 full, 2.46741 reduced" \
+    ritz-verify column.h5 small.h5 -o checked.h5
+
 # Where KG is K it stays K: in every method that projects, of one body, of two
 # that are joined, of a second stage and of the system's full model.
 expect 0 '' ritz-import -q --stiffness K.mtx --mass M.mtx --dofs dofs \

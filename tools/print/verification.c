@@ -1,5 +1,7 @@
 #include "print/print.h"
 
+#include "base/text.h"
+
 static ritz_status say_measures(cli_run *run, const ritz_measures *measures)
 {
     const ritz_measure *first = NULL;
@@ -154,6 +156,76 @@ static ritz_status settle_configurations(const cli_run *run, model *full,
     return model_at(reduced, run->operand[1], also ? given->at : NULL);
 }
 
+/* K, M and loads of a reduced component or of a system where it stands,
+   borrowed. */
+static ritz_reduced take_loaded(const model *m)
+{
+    if (m->kind == MODEL_SYSTEM)
+        return (ritz_reduced){.K = m->at->K,
+                              .M = m->at->M,
+                              .num_loads = m->at->num_loads,
+                              .load = m->at->load};
+    return (ritz_reduced){.K = m->reduced.K,
+                          .M = m->reduced.M,
+                          .num_loads = m->reduced.num_loads,
+                          .load = m->reduced.load};
+}
+
+/* A factor of both models, and how far apart they are. */
+static void say_factor(cli_run *run, const char *load, const char *way,
+                       double full, double reduced)
+{
+    if (isnan(full) && isnan(reduced))
+        return;
+    cli_say(run,
+            "buckling factor of load '%s'%s: %.6g full, %.6g reduced, %.1e",
+            load, way, full, reduced, reduced / full - 1.0);
+}
+
+/* Factors of both models; a warning, and none, if they cannot be computed. */
+static ritz_status find_factors(cli_run *run, const ritz_component *full,
+                                const ritz_reduced *reduced,
+                                ritz_buckling **whole, ritz_buckling **small)
+{
+    ritz_status status = ritz_buckling_of_component(full, whole);
+
+    if (status == RITZ_OK)
+        status = ritz_buckling_of_reduced(reduced, small);
+    if (status != RITZ_ERR_SINGULAR && status != RITZ_ERR_CONVERGENCE)
+        return status;
+    cli_warn(run, "buckling factors are not compared: %s",
+             ritz_error_message());
+    return RITZ_OK;
+}
+
+/* Buckling factors of loads that both models have. */
+static ritz_status say_buckling(cli_run *run, const model *full,
+                                const model *reduced)
+{
+    const ritz_component *c = &full->component;
+    const ritz_reduced r = take_loaded(reduced);
+    const ritz_names loads = {"load", c->num_loads, (const char *)c->load,
+                              sizeof *c->load};
+    RITZ_OWN_ARRAY ritz_buckling *whole = NULL, *small = NULL;
+
+    if (r.num_loads > 0 && c->num_loads > 0)
+        RITZ_CHECK(find_factors(run, c, &r, &whole, &small));
+    SINK_ITEMS(run, "buckling", k, whole && small ? r.num_loads : 0) {
+        const char *name = r.load[k].name;
+        const int64_t j = ritz_names_index(&loads, name);
+        const ritz_buckling none = {nan(""), nan("")};
+        const ritz_buckling *f = j >= 0 ? &whole[j] : &none;
+
+        say_factor(run, name, "", f->factor, small[k].factor);
+        say_factor(run, name, " reversed", f->reversed, small[k].reversed);
+        sink_set(run, "load,full,reduced", "%s %g %g", name, f->factor,
+                 small[k].factor);
+        sink_set(run, "full_reversed,reduced_reversed", "%g %g", f->reversed,
+                 small[k].reversed);
+    }
+    return RITZ_OK;
+}
+
 ritz_status verify_run(cli_run *run, verify_options *given)
 {
     const char *path = run->operand[1];
@@ -172,6 +244,8 @@ ritz_status verify_run(cli_run *run, verify_options *given)
     RITZ_CHECK_IN(path,
                   ritz_verify(model_reference(&full), model_reference(&reduced),
                               &given->verify, &measures));
+    if (reduced.kind != MODEL_STATES)
+        RITZ_CHECK(say_buckling(run, &full, &reduced));
     RITZ_CHECK(take_apart(run, given, &reduced));
     return keep_measures(run, given, &measures, &reduced);
 }

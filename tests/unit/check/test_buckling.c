@@ -188,6 +188,20 @@ static void a_free_body_has_no_factor(void **state)
     assert_non_null(strstr(find(&audit, "buckling")->says, "a motion is free"));
 }
 
+/* Bending of 320 elements: 1e11 or more between the least and the largest eigenvalue. */
+static void what_cannot_be_computed_is_a_warning(void **state)
+{
+    RITZ_OWN(ritz_component) c = {0};
+    RITZ_OWN(ritz_audit) audit = {0};
+
+    (void)state;
+    assert_ok(column_component(320, COLUMN_CLAMPED_FREE, &c));
+    assert_ok(ritz_audit_component(&c, &audit));
+    assert_int_equal(find(&audit, "buckling:tip")->verdict, RITZ_WARN);
+    assert_non_null(
+        strstr(find(&audit, "buckling:tip")->says, "not computed: "));
+}
+
 static void expect_verdict(const ritz_component *c, double amount,
                            ritz_verdict verdict, const char *words)
 {
@@ -244,7 +258,8 @@ static void a_load_that_is_not_there_is_refused(void **state)
                  RITZ_ERR_ARGUMENT, "load 'tip' is not finite");
 }
 
-static ritz_status find_and_free(const ritz_component *c)
+static ritz_status find_and_free(const ritz_component *c,
+                                 const ritz_reduced *reduced)
 {
     RITZ_OWN(ritz_audit) audit = {0};
     const ritz_applied tip = {"tip", 1.0};
@@ -252,16 +267,23 @@ static ritz_status find_and_free(const ritz_component *c)
 
     RITZ_CHECK(ritz_buckling_of_component(c, &found));
     free(found);
-    return ritz_audit_component_under(c, 1, &tip, &audit);
+    return ritz_audit_reduced_under(reduced, 1, &tip, &audit);
 }
 
 static void buckling_survives_every_allocation(void **state)
 {
-    RITZ_OWN(ritz_component) small = {0};
+    ritz_request request = RITZ_REQUEST_NONE;
+    RITZ_OWN(ritz_component) c = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
 
     (void)state;
-    assert_ok(column_component(2, COLUMN_CLAMPED_FREE, &small));
-    assert_survives_every_allocation(find_and_free(&small));
+    assert_ok(column_component(2, COLUMN_CLAMPED_FREE, &c));
+    request.component = &c;
+    request.modes = 2;
+    assert_ok(ritz_basis_make(&ritz_method_normal_modes, &request, &basis));
+    assert_ok(ritz_reduce(&c, &basis, &reduced));
+    assert_survives_every_allocation(find_and_free(&c, &reduced));
 }
 
 static ritz_status iterate(const ritz_component *c)
@@ -290,6 +312,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(
         a_reduced_model_buckles_later_and_nearly_where_the_full_one_does),
     cmocka_unit_test(a_free_body_has_no_factor),
+    cmocka_unit_test(what_cannot_be_computed_is_a_warning),
     cmocka_unit_test(a_load_above_half_of_its_buckling_load_warns),
     cmocka_unit_test(loads_that_act_are_added),
     cmocka_unit_test(a_load_that_is_not_there_is_refused),
