@@ -1,0 +1,71 @@
+#!/bin/sh
+# Switched models as a user asks for them, on the worked example of data/.
+# Usage: switched.sh FOLDER-OF-THE-TOOLS
+. "$(dirname "$0")/tap.sh"
+
+data=$here/../../data/switching
+sh "$data/make-matrices.sh" .
+
+ritz-import -q --stiffness plane.K.mtx --mass plane.M.mtx \
+    --damping plane.D.mtx --dofs plane.dofs --input fx=1:1 --input fy=1:2 \
+    --output-at x=1:1 --output-at vx=1:1/vel -o plane.h5
+ritz-import -q --stiffness turn.K.mtx --mass beam.M.mtx --dofs beam.dofs \
+    --input along=11:1 --input across=11:2 --output-at x=11:1 \
+    --output-at y=11:2 -o turn.h5
+ritz-basis -q normal-modes --modes 10 turn.h5 -o basis.h5
+
+plane='--seconds 3 --step 0.0025 --input fx=d3-x.tsv --input fy=d3-y.tsv'
+turn='--seconds 8 --step 0.001 --every 20 --input along=turn-along.tsv
+    --input across=turn-across.tsv'
+
+# --- runs --------------------------------------------------------------------
+
+json 0 ritz-simulate $plane plane.h5 --switched density4.mtx --redundant \
+    --switch-interval 0.01 --indicator 0.9 -o plane-d4.h5
+holds '  one vector of 32 carries the motion' \
+    'j["vectors"] == 32 and 0.9 < j["mean_vectors"] < 1
+     and j["fallbacks"] == 0 and j["imbalance"] < 1e-12'
+expect 0 'leading vector       0 to 21' ritz-info plane-d4.h5
+expect 0 'method         switched, step 0.0025 s' ritz-info plane-d4.h5
+
+json 0 ritz-simulate $turn turn.h5 --damping 'rayleigh 10 0' \
+    --switched basis.h5 --switch-interval 0.02 --indicator 0.999999999 \
+    --share-of library --look-ahead -o switched.h5
+holds '  fewer vectors a step than the twelve of the library' \
+    'j["vectors"] == 12 and j["mean_vectors"] < 8'
+ritz-simulate -q $turn turn.h5 --damping 'rayleigh 10 0' --up-to-hz 1e6 \
+    -o full.h5
+expect 0 '' ritz-chart switched full.h5 switched.h5 -o switched.svg
+expect 0 'switched.h5: 6' cat switched.svg
+expect 1 'the full model first' ritz-chart switched full.h5 -o x.svg
+expect 1 "'plane-d4.h5' has other times" ritz-chart switched full.h5 \
+    plane-d4.h5 -o x.svg
+
+json 0 ritz-simulate $turn turn.h5 --damping 'rayleigh 10 0' \
+    --switched modes:6 --switch-interval 0.02 --indicator 0.9 --jump project \
+    --share-of library -o project.h5
+holds '  what a projection takes is in the balance' 'j["imbalance"] < 1e-9'
+expect 0 'energy lost at switches' ritz-info project.h5
+
+# --- refusals ----------------------------------------------------------------
+
+run="ritz-simulate $turn turn.h5 --switch-interval 0.02 -o x.h5"
+expect 1 'D couples vector' $run --damping 'rayleigh 1 1e-3' \
+    --switched basis.h5
+expect 1 'sets that dwell' $run --damping 'rayleigh 1 1e-3' \
+    --switched basis.h5 --jump project
+expect 1 'is an eigenvector of M' $run --damping 'rayleigh 10 0' \
+    --switched modes --inner euclidean
+expect 1 'a library of 2 rows is of another model' $run --switched a.mtx
+expect 1 "'modes:x' is no number of modes" $run --switched modes:x
+expect 1 'a library without a name' $run --switched modes:3,
+expect 1 'damping ratios of a component' $run --damping 'modal 0.01' \
+    --switched modes:3
+expect 1 "'turn.h5' holds a component, not a basis" $run --switched turn.h5
+expect 1 '--switched needs --switch-interval' ritz-simulate $turn turn.h5 \
+    --switched modes -o x.h5
+expect 1 '--switched needs --step' ritz-simulate --seconds 1 \
+    --input along=step turn.h5 --switched modes --switch-interval 0.1 -o x.h5
+works 'nothing is written where a run is refused' test ! -e x.h5
+
+echo "1..$count"
