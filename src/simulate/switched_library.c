@@ -352,7 +352,7 @@ ritz_status ritz_library_new(const ritz_simulation_request *request,
     const int64_t inputs = full->B.ncol;
     RITZ_OWN(library_work) b = {0};
     RITZ_OWN(ritz_library) library = {0};
-    RITZ_OWN(ritz_dense) all = {0}, terms = {0}, part = {0};
+    RITZ_OWN(ritz_dense) all = {0}, terms = {0};
     const ritz_sparse *W = NULL;
     int64_t room = 0;
 
@@ -371,9 +371,8 @@ ritz_status ritz_library_new(const ritz_simulation_request *request,
         find_outside(request, &b, &library);
     RITZ_CHECK(fill_terms(&b, &library, &terms));
     RITZ_CHECK(project_model(&terms, &library));
-    part = ritz_dense_part(&terms, library.n, terms.ncol - library.n);
-    RITZ_CHECK(ritz_effective_solve(&b.mass, part.ncol, part.val));
-    part = (ritz_dense){0};
+    RITZ_CHECK(ritz_effective_solve(&b.mass, terms.ncol - library.n,
+                                    ritz_dense_col(&terms, library.n)));
     RITZ_CHECK(express_terms(&b, W, &terms, &library));
     drop_rounding(&library.K);
     drop_rounding(&library.D);
@@ -383,12 +382,13 @@ ritz_status ritz_library_new(const ritz_simulation_request *request,
 
 void ritz_library_free(ritz_library *library)
 {
-    ritz_dense *const all[] = {&library->Phi, &library->MPhi, &library->vector,
-                               &library->K,   &library->D,    &library->B,
-                               &library->S_x, &library->S_k,  &library->S_d,
-                               &library->S_b};
+    enum { MATRICES = 10 };
+    ritz_dense *const all[MATRICES] = {
+        &library->Phi, &library->MPhi, &library->vector, &library->K,
+        &library->D,   &library->B,    &library->S_x,    &library->S_k,
+        &library->S_d, &library->S_b};
 
-    for (size_t k = 0; k < sizeof all / sizeof *all; k++)
+    for (int k = 0; k < MATRICES; k++)
         ritz_dense_free(all[k]);
     RITZ_FREE(library->scale);
     *library = (ritz_library){0};

@@ -97,11 +97,12 @@ static ritz_status take_library(simulation_task *task, const char *word)
 
 ritz_status simulation_switched_prepare(simulation_task *task)
 {
-    RITZ_OWN_ARRAY char *text = strdup(task->given->switched);
-    char *rest = text;
+    const char *given = task->given->switched;
+    RITZ_OWN_ARRAY char *text = NULL;
+    char *rest = NULL;
 
-    if (!text)
-        return RITZ_ERR_MEMORY;
+    RITZ_CHECK_COPY(text, given, (int64_t)strlen(given) + 1);
+    rest = text;
     RITZ_CHECK_NEW(task->library, MOST_LIBRARIES);
     while (rest) {
         char *comma = strchr(rest, ',');
