@@ -6,7 +6,8 @@
 static const cli_program program = {
     .name = "ritz-frf",
     .operands = {{"FILE",
-                  "a component, reduced component, system or state space",
+                  "a component, reduced component, system or state space, or a "
+                  "measured response, as a container or columns of text",
                   false}},
     .summary = "Frequency response from every input to every output.",
     .example = "ritz-frf system.h5 --at clock=60,cone=0 --to-hz 10 "
@@ -53,7 +54,8 @@ int main(int argc, char **argv)
         CLI_FLAG("zeros", &given.zeros,
                  "list the transmission zeros of every channel"),
         CLI_TEXT("controller", &loops->controller, "FILE",
-                 "close a loop with this state space"),
+                 "close a loop with this state space, or with a response that "
+                 "was measured: a container, or columns of text"),
         CLI_LIST("connect", &loops->connect, "OUT=IN",
                  "join signals of plant and controller by these names"),
         CLI_WORD("feedback", &loops->feedback, "negative|positive",

@@ -40,10 +40,11 @@ typedef struct exact {
 static void release_exact(void *own)
 {
     exact *s = own;
-    ritz_dense *const matrices[] = {&s->E, &s->W[0], &s->W[1], &s->W[2],
-                                    &s->C, &s->D,    &s->v};
+    enum { MATRICES = 7 };
+    ritz_dense *const matrices[MATRICES] = {&s->E, &s->W[0], &s->W[1], &s->W[2],
+                                            &s->C, &s->D,    &s->v};
 
-    for (size_t k = 0; k < sizeof matrices / sizeof *matrices; k++)
+    for (int k = 0; k < MATRICES; k++)
         ritz_dense_free(matrices[k]);
     ritz_loop_notes_free(&s->notes);
     RITZ_FREE(s->memory, s->z, s->z1, s);

@@ -47,12 +47,13 @@ typedef struct split {
 static void release_split(void *own)
 {
     split *s = own;
-    ritz_dense *const matrices[] = {&s->A, &s->B, &s->C,
-                                    &s->D, &s->e, &s->D_yu};
+    enum { MATRICES = 6 };
+    ritz_dense *const matrices[MATRICES] = {&s->A, &s->B, &s->C,
+                                            &s->D, &s->e, &s->D_yu};
 
     if (s->plant.own)
         s->plant.free(s->plant.own);
-    for (size_t k = 0; k < sizeof matrices / sizeof *matrices; k++)
+    for (int k = 0; k < MATRICES; k++)
         ritz_dense_free(matrices[k]);
     ritz_loop_notes_free(&s->notes);
     RITZ_FREE(s->memory, s->z, s->seen, s->next, s->u0, s->u1, s);

@@ -347,6 +347,13 @@ SIGNAL = {
     "step": "= step", "sine": "= sine:3*2.5", "chirp": "= chirp:0.1,20*-1",
     "table": "# t, u\n0\t0\n0.05, 1\n0.05 2\n1e0;-1\r\n",
 }
+RESPONSE_TABLE = {
+    "bare": "0 1 0\n0.5 1 -1e-3\n",
+    "polar": "# hertz\t|tip/push|\tdegrees\tsigma1\n0 1 0 1\n1;2,90 2\r\n",
+    "four": "# hertz re(a/u) im(a/u) re(b/u) im(b/u) |a/v| degrees |b/v| "
+            "degrees\n1 1 2 3 4 5 6 7 8\n# end\n2 1 2 3 4 5 6 7 8\n",
+    "only": "# hertz magnitude degrees\n1 1 0\n2 1 -180\n",
+}
 TEXTS = {
     "damping": "damping modal 0.01\ndamping modes 0.01 0.02 0.005\n"
                "damping bands 0 10 0.01 10 20 0.02\ndamping rayleigh 0.1 1e-5\n"
@@ -605,6 +612,7 @@ CORPUS = {
                  "user-element": USER_ELEMENT["abaqus"]},
     "deck": DECK, "fmu": FMU, "import": IMPORT, "state-space": STATE_SPACE,
     "container": CONTAINER, "scene": SCENE, "signal": SIGNAL,
+    "response-table": RESPONSE_TABLE,
     "history": HISTORY, "frames": FRAMES, "texts": TEXTS,
     "row-table": ROW_TABLE,
     "claims": CLAIMS, "records": RECORDS, "tracks": TRACKS,

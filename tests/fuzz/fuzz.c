@@ -32,6 +32,8 @@ static const fuzz_target targets[] = {
     {"container", "containers, sound HDF5 with any content", fuzz_container},
     {"fmu", "resources of FMUs, and a step of them", fuzz_fmu},
     {"scene", "scenes, and settings of --at", fuzz_scene},
+    {"response-table", "measured responses as columns of text",
+     fuzz_response_table},
     {"signal", "signals of ritz-simulate, and their tables", fuzz_signal},
     {"history", "coordinates over time, of Exudyn, FMPy and MBDyn",
      fuzz_history},

@@ -27,7 +27,7 @@ fuzz_run fuzz_output4, fuzz_matrix_market, fuzz_coordinates, fuzz_dmig,
 fuzz_run fuzz_matrix_input, fuzz_user_element, fuzz_harwell_boeing;
 fuzz_run fuzz_import, fuzz_state_space;
 fuzz_run fuzz_scene, fuzz_signal, fuzz_history, fuzz_frames, fuzz_texts;
-fuzz_run fuzz_row_table;
+fuzz_run fuzz_row_table, fuzz_response_table;
 fuzz_run fuzz_claims, fuzz_records, fuzz_tracks;
 fuzz_run fuzz_container, fuzz_mat_hdf5;
 fuzz_run fuzz_fmu;

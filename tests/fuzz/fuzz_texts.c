@@ -9,6 +9,7 @@
 #include <ritz/parts.h>
 #include <ritz/ranking.h>
 #include <ritz/recover.h>
+#include <ritz/response.h>
 #include <ritz/scene.h>
 #include <ritz/simulate.h>
 #include <ritz/verify.h>
@@ -73,6 +74,17 @@ void fuzz_signal(const char *bytes, int64_t size)
     } else if (!strchr(bytes, '/')) { /* it may name a file */
         read_signal(bytes + 2);
     }
+}
+
+/* --- responses ------------------------------------------------------------ */
+
+void fuzz_response_table(const char *bytes, int64_t size)
+{
+    RITZ_OWN(ritz_response) r = {0};
+
+    fuzz_store("table", bytes, size);
+    (void)ritz_response_table_seems("table");
+    fuzz_judge(ritz_response_read_table("table", &r));
 }
 
 /* --- histories ------------------------------------------------------------ */

@@ -88,6 +88,44 @@ expect 2 'give its --controller' ritz-frf whole.h5 --to-hz 0.5 --force -o none.h
 expect 2 "takes 'negative' or 'positive', not 'posotive'" ritz-frf whole.h5 \
     --to-hz 0.5 --controller damp.h5 --feedback posotive -o none.h5
 
+# --- measured responses ----------------------------------------------------
+
+ritz-frf whole.h5 --to-hz 0.5 --damping 'modal 0.02' -q -o open.h5
+ritz-export -q --to tsv open.h5 -o open.tsv
+ritz-frf damp.h5 --points-of open.h5 -q -o inner.h5
+ritz-frf whole.h5 --damping 'modal 0.02' --points-of open.h5 -q \
+    --controller damp.h5 --connect tip=u1 --connect y1=tip -o due.h5
+for plant in open.h5 open.tsv; do
+    for controller in damp.h5 inner.h5; do
+        expect 0 'phase margin, degrees                          96.' ritz-frf \
+            "$plant" --controller "$controller" --connect tip=u1 \
+            --connect y1=tip -o "measured-$plant-$controller"
+    done
+done
+works 'a measured loop is that of the model at its points' \
+    /usr/bin/python3 -s - <<'END'
+import glob, h5py
+def H(name):
+    with h5py.File(name) as f:
+        return f["H/real"][:] + 1j * f["H/imag"][:]
+due = H("due.h5")
+for name in glob.glob("measured-*"): # 15 digits of the table
+    assert abs(H(name) - due).max() < 1e-13 * abs(due).max(), name
+END
+expect 0 'a measured response has no states; its margins' ritz-frf open.tsv \
+    --controller damp.h5 --connect tip=u1 --connect y1=tip -o any.h5
+expect 1 'a measured response has no states to write' ritz-frf open.tsv \
+    --controller damp.h5 --connect tip=u1 --connect y1=tip \
+    --closed-loop no-states.h5 -o none.h5
+expect 1 'measured were 0.0005 to 0.5 Hz: beyond, nothing is known' ritz-frf \
+    open.tsv --to-hz 1 -o none.h5
+expect 1 'was measured, no points can be added' ritz-frf open.tsv \
+    --tolerance 1e-3 -o none.h5
+expect 1 'was measured: --at, --damping' ritz-frf open.tsv --order 3 -o none.h5
+printf '1 2 3\n0.5 2 3\n' >back.tsv
+expect 1 'the frequency of line 2 does not ascend' ritz-frf back.tsv -o none.h5
+works 'nothing is written of them' test ! -e none.h5
+
 # --- nested files --------------------------------------------------------------
 
 ritz-basis normal-modes --modes 8 chain.h5 -q -o modes.h5

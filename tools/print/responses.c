@@ -1,4 +1,4 @@
-#include "print/print.h"
+#include "print/measured.h"
 
 #include "base/tolerances.h"
 
@@ -109,12 +109,14 @@ static ritz_status new_responder(cli_run *run, const model *m,
     const ritz_response_engine *engine = NULL;
     const char *remark = NULL;
     ritz_response_request request = {
-        .model = model_reference(m),
         .up_to_hz = given->up_to_hz,
         .tolerance = engine_share * given->tolerance,
         .from_hz = grid->hertz ? grid->hertz[0] : grid->from_hz,
         .to_hz = grid->hertz ? grid->hertz[grid->count - 1] : grid->to_hz};
 
+    if (measured_is(m))
+        return ritz_measured_responder(&m->response, out);
+    request.model = model_reference(m);
     RITZ_CHECK(choose_engine(run, given->method, &request, &engine));
     if (strcmp(given->method, "auto") == 0 || modal)
         RITZ_CHECK(ritz_responder_or_direct(engine, &request, out));
@@ -206,7 +208,7 @@ static ritz_status find_scales(const response_options *given, const model *m,
                                const ritz_response *r, double *size,
                                ritz_scales *out)
 {
-    const double *limit = ritz_model_io(model_reference(m)).limit;
+    const double *limit = measured_ends(m).limit;
     bool any = false;
 
     for (int64_t j = 0; j < r->num_inputs; j++)
@@ -363,8 +365,8 @@ static void loop_run_free(loop_run *loop)
 static ritz_status join_signals(cli_run *run, const loop_options *given,
                                 const model *m, loop_run *out)
 {
-    const ritz_io plant = ritz_model_io(model_reference(m)),
-                  inner = ritz_model_io(model_reference(&out->controller));
+    const ritz_io plant = measured_ends(m),
+                  inner = measured_ends(&out->controller);
 
     return loop_join(run, given, &plant, &inner, &out->loop);
 }
@@ -392,6 +394,19 @@ static ritz_status say_stability(cli_run *run, const ritz_state_space *closed,
     return RITZ_OK;
 }
 
+/* A loop with a part that was measured has no poles to tell. */
+static ritz_status leave_stability(cli_run *run, const loop_options *given)
+{
+    RITZ_REFUSE_IF(given->states, RITZ_ERR_ARGUMENT,
+                   "--closed-loop: a measured response has no states to write");
+    cli_warn(run,
+             "whether the loop is stable is not known: a measured response "
+             "has no states; its margins alone, in what was measured, say "
+             "how near it comes to -1");
+    sink_set(run, "stability", "%s", "unknown");
+    return RITZ_OK;
+}
+
 /* Poles of the closed loop, if its plant has states. */
 static ritz_status find_poles(cli_run *run, const loop_options *given,
                               const model *m, const loop_run *loop,
@@ -399,8 +414,11 @@ static ritz_status find_poles(cli_run *run, const loop_options *given,
 {
     RITZ_OWN(ritz_state_space) made = {0}, closed = {0};
     const ritz_state_space *plant = NULL;
-    bool known = model_has_states(m);
+    bool known = false;
 
+    if (measured_is(m) || measured_is(&loop->controller))
+        return leave_stability(run, given);
+    known = model_has_states(m);
     RITZ_REFUSE_IF(!known && given->states, RITZ_ERR_ARGUMENT,
                    "--closed-loop: the plant is too large for states, or has "
                    "structural damping: reduce it");
@@ -440,14 +458,18 @@ static ritz_status close_loop(cli_run *run, const loop_options *given,
         .model = ritz_model_of_states(&out->controller.states),
         .from_hz = range_hz[0],
         .to_hz = range_hz[1]};
+    ritz_status status = RITZ_OK;
 
     if (!given->controller)
         return RITZ_OK;
     RITZ_CHECK(join_signals(run, given, m, out));
     RITZ_CHECK(find_poles(run, given, m, out, &count, &pole));
-    RITZ_CHECK_IN(given->controller,
-                  ritz_responder_new(ritz_response_engine_find("states"),
-                                     &request, &out->inner));
+    status =
+        measured_is(&out->controller)
+            ? ritz_measured_responder(&out->controller.response, &out->inner)
+            : ritz_responder_new(ritz_response_engine_find("states"), &request,
+                                 &out->inner);
+    RITZ_CHECK_IN(given->controller, status);
     return ritz_loop_responder(&out->loop, out->plant, out->inner, count, pole,
                                &out->closed);
 }
@@ -550,6 +572,39 @@ static ritz_status find_response(cli_run *run, const model *m,
     return given->zeros ? find_all_zeros(run, m) : RITZ_OK;
 }
 
+/* The model and its controller, as options ask for them. */
+static ritz_status read_parts(cli_run *run, const response_options *given,
+                              model *m, model *controller)
+{
+    const char *path = run->operand[0];
+    const char *other = given->loops.controller;
+
+    RITZ_CHECK(measured_read(run, path, MODEL_DYNAMIC, m));
+    if (other)
+        RITZ_CHECK(measured_read(run, other, MODEL_STATES, controller));
+    RITZ_REFUSE_IF((measured_is(m) || measured_is(controller)) &&
+                       given->tolerance > 0.0,
+                   RITZ_ERR_ARGUMENT,
+                   "--tolerance: '%s' was measured, no points can be added",
+                   measured_is(m) ? path : other);
+    if (measured_is(m))
+        return measured_refuse(given, path);
+    RITZ_CHECK(model_settle(m, path, &given->model));
+    return model_refuse_forces(m, path);
+}
+
+static ritz_status find_points(cli_run *run, const response_options *given,
+                               const model *m, const model *controller,
+                               model *other, ritz_grid *out)
+{
+    if (given->points_of)
+        return borrow_points(run, given, other, out);
+    return ritz_context(measured_is(m) || measured_is(controller)
+                            ? measured_place(given, m, controller, out)
+                            : place_points(m, given, out),
+                        run->operand[0]);
+}
+
 ritz_status responses_run(cli_run *run, const response_options *given)
 {
     const char *path = run->operand[0];
@@ -561,17 +616,9 @@ ritz_status responses_run(cli_run *run, const response_options *given)
     ritz_io ends; /* borrowed */
 
     check_options(run->program, given);
-    RITZ_CHECK(model_read(run, path, MODEL_DYNAMIC, &m));
-    if (given->loops.controller)
-        RITZ_CHECK(model_read(run, given->loops.controller, MODEL_STATES,
-                              &loop.controller));
-    RITZ_CHECK(model_settle(&m, path, &given->model));
-    RITZ_CHECK(model_refuse_forces(&m, path));
-    if (given->points_of)
-        RITZ_CHECK(borrow_points(run, given, &other, &grid));
-    else
-        RITZ_CHECK_IN(path, place_points(&m, given, &grid));
-    ends = ritz_model_io(model_reference(&m));
+    RITZ_CHECK(read_parts(run, given, &m, &loop.controller));
+    RITZ_CHECK(find_points(run, given, &m, &loop.controller, &other, &grid));
+    ends = measured_ends(&m);
     RITZ_REFUSE_IF(ends.num_inputs == 0 || ends.num_outputs == 0,
                    RITZ_ERR_ARGUMENT, "'%s' has no %s, it responds to nothing",
                    path, ends.num_inputs == 0 ? "inputs" : "outputs");
