@@ -110,6 +110,22 @@ static const cli_program program = {
         CLI_FLAG("redundant", &(it)->redundant,                                \
                  "vectors of the library may depend on each other")
 
+/* A joint of a scene that moves. */
+#define SWEEP_OPTIONS(it)                                                      \
+    CLI_TEXT("sweep", &(it)->sweep, "JOINT=FROM:TO:TIME[s][:smooth]",          \
+             "turn a joint of a scene meanwhile, in degrees and seconds, "     \
+             "or as a file of times and settings says"),                       \
+        CLI_WORD("sweep-basis", &(it)->sweep_basis,                            \
+                 "switched|without-terms|one|full",                            \
+                 "modes at each angle, with the terms of their change or "     \
+                 "without; one basis of COMPARE for all; all modes"),          \
+        CLI_INT("sweep-modes", &(it)->sweep_modes, "N", 1, 1e6,                \
+                "modes at each angle [those up to --up-to-hz or in the "       \
+                "scene's band]"),                                              \
+        CLI_WORD("sweep-against", &(it)->sweep_against,                        \
+                 "switched|without-terms|one|full",                            \
+                 "say how far the run is from that with another basis")
+
 int main(int argc, char **argv)
 {
     simulation_options given = {.method = "modal",
@@ -119,7 +135,8 @@ int main(int argc, char **argv)
                                 .indicator = 0.99,
                                 .inner = "mass",
                                 .jump = "offset",
-                                .share_of = "model"};
+                                .share_of = "model",
+                                .sweep_basis = "switched"};
     const cli_option options[] = {
         CLI_TEXT("method", &given.method, "NAME", "integrator, one of --list"),
         CLI_REAL("seconds", &given.seconds, "T", 1e-12, 1e12,
@@ -153,6 +170,7 @@ int main(int argc, char **argv)
         LOOP_OPTIONS_IN_TIME(&given),
         CONSTRAINT_OPTIONS(&given),
         SWITCHING_OPTIONS(&given),
+        SWEEP_OPTIONS(&given),
         CLI_TEXT("checkpoint", &given.checkpoint, "FILE",
                  "keep what is done in FILE every half minute or so; the same "
                  "command continues from it"),

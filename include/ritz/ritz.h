@@ -26,6 +26,7 @@
 #include <ritz/spin.h>
 #include <ritz/state_space.h>
 #include <ritz/subspace.h>
+#include <ritz/swept.h>
 #include <ritz/switched.h>
 #include <ritz/system.h>
 #include <ritz/tuning.h>

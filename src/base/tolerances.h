@@ -78,6 +78,18 @@
    its rounding. */
 #define RITZ_CONDENSED_ROUNDING 1e-13
 
+/* A basis over the setting of a joint is interpolated so well that a mode is
+   off by this part of it, in the mass norm: its energy by the square. */
+#define RITZ_SWEPT_ERROR 1e-7
+/* Bases at two settings next to each other, of which a direction turns by more
+   than 60 degrees, are not continuous. */
+#define RITZ_SWEPT_OVERLAP 0.5
+/* The setting at which a mode leaves a band is found to this part of the
+   range. */
+#define RITZ_SWEPT_CHANGE 1e-4
+/* Rotations at two pairs of settings give one axis and a whole turn. */
+#define RITZ_SWEPT_AXIS 1e-6
+
 /* Responses */
 
 /* Frequencies of a grid closer than this, relative, are one point: their last

@@ -365,6 +365,10 @@ typedef struct simulation_options {
     const char *way;      /* of its propagation, "split" or "exact" */
     double sample, delay; /* of a sampled controller, s; 0: it is none */
     bool discrete;
+    const char *sweep; /* "JOINT=PATH"; NULL: no joint moves */
+    const char *sweep_basis, *sweep_against; /* rows of simulation_swept.c */
+    int64_t sweep_modes;                     /* 0: not given */
+    char sweep_at[2 * RITZ_NAME_SIZE];       /* model.at of its start */
     model_options model;
 } simulation_options;
 

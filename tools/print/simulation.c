@@ -353,6 +353,7 @@ ritz_status simulation_run(cli_run *run, simulation_options *given)
     d = {.run = run, .given = given, .reached = {.left = -1}};
     ritz_cost cost = {0};
 
+    RITZ_CHECK_IN("--sweep", simulation_sweep_prepare(run, given));
     take_options(run, given);
     RITZ_CHECK(read_subject(&d));
     if (d.m.kind == MODEL_SYSTEM && !(band_hz[1] > 0.0))

@@ -81,6 +81,14 @@ simulation_function simulation_switched;
 bool simulation_spins(const simulation_task *task);
 simulation_function simulation_spin;
 
+/* A joint that moves: simulation_swept.c. */
+bool simulation_sweep_asked(const simulation_options *given);
+simulation_function simulation_sweep;
+
+/** Take the start of --sweep into --at, and its end for --seconds; refuse what
+ * is no path. */
+ritz_status simulation_sweep_prepare(cli_run *run, simulation_options *given);
+
 /** Say what each integrator costs at the step that it needs. */
 ritz_status simulation_say_costs(simulation_task *d, const double band_hz[2]);
 

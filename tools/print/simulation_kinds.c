@@ -19,5 +19,8 @@ const simulation_kind simulation_kinds[] = {
      .asked = simulation_is_controlled,
      .simulate = simulation_controlled,
      .prepare = simulation_prepare_loop},
+    {.option = "--sweep",
+     .asked = simulation_sweep_asked,
+     .simulate = simulation_sweep},
     {0},
 };

@@ -1,0 +1,200 @@
+/*
+ * The setting of a joint over time. With s = t / seconds in [0, 1]
+ *
+ *     linear   a = from + (to - from) s
+ *     smooth   a = from + (to - from) (10 s^3 - 15 s^4 + 6 s^5)
+ *
+ * and of a table the cubic spline whose rate is 0 at both ends.
+ */
+#include "base/alloc.h"
+#include "base/text.h"
+
+#include <ritz/swept.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The numbers of FROM:TO:T, T perhaps with an s behind it, and ":smooth". */
+static bool read_words(const char *text, ritz_path *out)
+{
+    char copy[RITZ_NAME_SIZE] = "";
+    char *place = NULL, *word[4] = {0}, *end = NULL;
+
+    if (strlen(text) >= sizeof copy)
+        return false;
+    memcpy(copy, text, strlen(text) + 1);
+    word[0] = strtok_r(copy, ":", &place);
+    for (int k = 1; k < 4 && word[k - 1]; k++)
+        word[k] = strtok_r(NULL, ":", &place);
+    if (!word[2] || strtok_r(NULL, ":", &place))
+        return false;
+    end = word[2] + strlen(word[2]);
+    if (end - word[2] > 1 && end[-1] == 's')
+        end[-1] = '\0';
+    out->kind = word[3] ? RITZ_PATH_SMOOTH : RITZ_PATH_LINEAR;
+    return ritz_text_real(word[0], &out->from) &&
+           ritz_text_real(word[1], &out->to) &&
+           ritz_text_real(word[2], &out->seconds) &&
+           (!word[3] || strcmp(word[3], "smooth") == 0);
+}
+
+/*
+ * Second rates m of the spline: with h_k = t_k+1 - t_k, d_k = (a_k+1 - a_k) /
+ * h_k
+ *
+ *     h_k-1 m_k-1 + 2 (h_k-1 + h_k) m_k + h_k m_k+1 = 6 (d_k - d_k-1)
+ *
+ * and at the ends, where the rate is 0, 2 h_0 m_0 + h_0 m_1 = 6 d_0 and h m_n-1
+ * + 2 h m_n = -6 d. Diagonally dominant, so without pivots.
+ */
+static ritz_status bend_table(ritz_path *path)
+{
+    const int64_t n = path->count;
+    const double *t = path->time, *a = path->value;
+    RITZ_OWN_ARRAY double *upper = NULL;
+
+    RITZ_CHECK_NEW(upper, n);
+    RITZ_CHECK_NEW(path->bend, n);
+    for (int64_t k = 0; k < n; k++) {
+        double left = k > 0 ? t[k] - t[k - 1] : 0.0;
+        double right = k + 1 < n ? t[k + 1] - t[k] : 0.0;
+        double own = 2.0 * (left + right);
+        double load = 0.0;
+
+        if (right > 0.0)
+            load += 6.0 * (a[k + 1] - a[k]) / right;
+        if (left > 0.0) {
+            load -= 6.0 * (a[k] - a[k - 1]) / left;
+            own -= left * upper[k - 1];
+            load -= left * path->bend[k - 1];
+        }
+        upper[k] = right / own;
+        path->bend[k] = load / own;
+    }
+    for (int64_t k = n - 2; k >= 0; k--)
+        path->bend[k] -= upper[k] * path->bend[k + 1];
+    return RITZ_OK;
+}
+
+static ritz_status read_table(const char *file, ritz_path *out)
+{
+    ritz_signal table = {0};
+
+    RITZ_CHECK(ritz_signal_parse(file, &table));
+    out->kind = RITZ_PATH_TABLE;
+    out->count = table.count;
+    out->time = table.time;
+    out->value = table.value;
+    RITZ_REFUSE_IF(out->count < 2, RITZ_ERR_ARGUMENT,
+                   "'%s' has fewer than two times", file);
+    for (int64_t k = 1; k < out->count; k++)
+        RITZ_REFUSE_IF(!(out->time[k] > out->time[k - 1]), RITZ_ERR_ARGUMENT,
+                       "'%s' has %g s twice: a joint does not jump", file,
+                       out->time[k]);
+    RITZ_REFUSE_IF(out->time[0] != 0.0, RITZ_ERR_ARGUMENT,
+                   "'%s' begins at %g s, and the run at 0", file, out->time[0]);
+    out->from = out->value[0];
+    out->to = out->value[out->count - 1];
+    out->seconds = out->time[out->count - 1];
+    return bend_table(out);
+}
+
+ritz_status ritz_path_parse(const char *text, ritz_path *out)
+{
+    RITZ_OWN(ritz_path) path = {0};
+    double range[2];
+
+    if (strchr(text, ':')) {
+        RITZ_REFUSE_IF(!read_words(text, &path), RITZ_ERR_ARGUMENT,
+                       "'%s' is not FROM:TO:SECONDS, as 0:60:30s or "
+                       "0:60:30s:smooth",
+                       text);
+        RITZ_REFUSE_IF(!isfinite(path.from) || !isfinite(path.to) ||
+                           !isfinite(path.seconds) || !(path.seconds > 0.0),
+                       RITZ_ERR_ARGUMENT, "'%s' takes no time", text);
+    } else {
+        RITZ_CHECK(read_table(text, &path));
+    }
+    ritz_path_range(&path, range);
+    RITZ_REFUSE_IF(!(range[1] > range[0]), RITZ_ERR_ARGUMENT,
+                   "'%s' does not move: its range is empty", text);
+    RITZ_MOVE(*out, path);
+    return RITZ_OK;
+}
+
+/* The spline between times k and k + 1. */
+static void table_at(const ritz_path *path, int64_t k, double t, double *out)
+{
+    double h = path->time[k + 1] - path->time[k];
+    double s = t - path->time[k];
+    double m = path->bend[k], jerk = (path->bend[k + 1] - m) / h;
+    double rate = (path->value[k + 1] - path->value[k]) / h -
+                  h * (2.0 * m + path->bend[k + 1]) / 6.0;
+
+    out[0] = path->value[k] + s * (rate + s * (0.5 * m + s * jerk / 6.0));
+    out[1] = rate + s * (m + 0.5 * s * jerk);
+    out[2] = m + s * jerk;
+}
+
+void ritz_path_at(const ritz_path *path, double t, double out[static 3])
+{
+    const double range = path->to - path->from, T = path->seconds;
+    const double s = t / T;
+    int64_t k = 0;
+
+    out[1] = out[2] = 0.0;
+    if (path->kind == RITZ_PATH_LINEAR) {
+        out[0] = path->from + range * s;
+        out[1] = range / T;
+    } else if (s >= 1.0) {
+        out[0] = path->to;
+    } else if (path->kind == RITZ_PATH_SMOOTH) {
+        out[0] = path->from + range * s * s * s * (10.0 + s * (6.0 * s - 15.0));
+        out[1] = range * 30.0 * s * s * (1.0 - s) * (1.0 - s) / T;
+        out[2] = range * 60.0 * s * (1.0 - s) * (1.0 - 2.0 * s) / (T * T);
+    } else {
+        while (k + 2 < path->count && t >= path->time[k + 1])
+            k++;
+        table_at(path, k, t, out);
+    }
+}
+
+/* Extremes of the spline: values at its times, and where its rate is 0. */
+static void range_table(const ritz_path *path, double *range)
+{
+    for (int64_t k = 0; k + 1 < path->count; k++) {
+        double h = path->time[k + 1] - path->time[k], at[3];
+        double jerk = (path->bend[k + 1] - path->bend[k]) / h;
+        double roots[2] = {0.0, 0.0};
+        double root = 0.0;
+
+        table_at(path, k, path->time[k], at);
+        root = sqrt(fmax(at[2] * at[2] - 2.0 * jerk * at[1], 0.0));
+        /* rate + m s + jerk s^2 / 2 = 0 in the form that does not cancel */
+        root = -(at[2] + copysign(root, at[2]));
+        roots[0] = root != 0.0 ? 2.0 * at[1] / root : 0.0;
+        roots[1] = jerk != 0.0 ? root / jerk : 0.0;
+        for (int j = 0; j < 2; j++) {
+            double s = fmin(fmax(roots[j], 0.0), h);
+
+            table_at(path, k, path->time[k] + s, at);
+            range[0] = fmin(range[0], at[0]);
+            range[1] = fmax(range[1], at[0]);
+        }
+    }
+}
+
+void ritz_path_range(const ritz_path *path, double out[static 2])
+{
+    out[0] = fmin(path->from, path->to);
+    out[1] = fmax(path->from, path->to);
+    if (path->kind == RITZ_PATH_TABLE)
+        range_table(path, out);
+}
+
+void ritz_path_free(ritz_path *path)
+{
+    RITZ_FREE(path->time, path->value, path->bend);
+    *path = (ritz_path){0};
+}

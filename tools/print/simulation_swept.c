@@ -1,0 +1,230 @@
+/* ritz-simulate --sweep: a joint turns while the system vibrates, in one of
+ * several bases, and what another basis makes of it. */
+#include "print/simulation.h"
+
+#include "base/alloc.h"
+#include "base/text.h"
+#include "base/tolerances.h"
+
+#include <ritz/swept.h>
+
+#include <inttypes.h>
+
+/* Which basis, and what is done with it. */
+typedef struct sweep_basis {
+    const char *name;
+    bool cut;   /* to some modes at each setting */
+    bool terms; /* of the change of the basis */
+    bool one;   /* the bodies of COMPARE's second stage */
+} sweep_basis;
+
+static const sweep_basis bases[] = {
+    {.name = "switched", .cut = true, .terms = true},
+    {.name = "without-terms", .cut = true},
+    {.name = "one", .terms = true, .one = true},
+    {.name = "full", .terms = true},
+};
+
+static const sweep_basis *find_basis(const char *name)
+{
+    size_t k = 0;
+
+    while (strcmp(bases[k].name, name) != 0)
+        k++;
+    return &bases[k];
+}
+
+bool simulation_sweep_asked(const simulation_options *given)
+{
+    return given->sweep;
+}
+
+/* What is behind JOINT=. */
+static ritz_status parse_path(const char *text, ritz_path *out)
+{
+    const char *equals = strchr(text, '=');
+
+    RITZ_REFUSE_IF(!equals || equals == text, RITZ_ERR_ARGUMENT,
+                   "'%s' is not JOINT=FROM:TO:TIME", text);
+    return ritz_path_parse(equals + 1, out);
+}
+
+ritz_status simulation_sweep_prepare(cli_run *run, simulation_options *given)
+{
+    const char *at = given->model.at ? given->model.at : "";
+    RITZ_OWN(ritz_path) path = {0};
+    int length = 0;
+
+    if (!given->sweep) {
+        if (given->sweep_against || given->sweep_modes > 0 ||
+            strcmp(given->sweep_basis, "switched") != 0)
+            cli_refuse(run->program, "--sweep-... needs --sweep");
+        return RITZ_OK;
+    }
+    RITZ_CHECK(parse_path(given->sweep, &path));
+    if (path.kind == RITZ_PATH_TABLE)
+        RITZ_CHECK(cli_input(run, strchr(given->sweep, '=') + 1));
+    length = snprintf(given->sweep_at, sizeof given->sweep_at, "%.*s=%.17g%s%s",
+                      (int)(strchr(given->sweep, '=') - given->sweep),
+                      given->sweep, path.from, *at ? "," : "", at);
+    RITZ_REFUSE_IF(length < 0 || (size_t)length >= sizeof given->sweep_at,
+                   RITZ_ERR_ARGUMENT, "'%s' is too long", given->sweep);
+    given->model.at = given->sweep_at;
+    if (given->seconds == 0.0)
+        given->seconds = path.seconds;
+    if (strcmp(given->method, "modal") == 0)
+        given->method = "trapezoidal"; /* the default of other runs */
+    if (given->model.damper.count > 0)
+        cli_refuse(run->program,
+                   "--damper has no effect on a joint that moves");
+    return RITZ_OK;
+}
+
+/* The range of a path of a sweep of the scene. */
+static ritz_status ask_range(const simulation_task *d, const ritz_path *path,
+                             ritz_sweep_request *out)
+{
+    const ritz_scene *scene = &d->scene;
+    const char *text = d->given->sweep;
+    const ritz_names names = {"joint", scene->num_sweeps,
+                              (const char *)scene->sweep, sizeof *scene->sweep};
+    char joint[RITZ_NAME_SIZE] = "";
+
+    (void)snprintf(joint, sizeof joint, "%.*s", (int)(strchr(text, '=') - text),
+                   text);
+    RITZ_CHECK(ritz_words_find(&names, joint, &out->sweep));
+    out->setting = d->setting;
+    out->damping = d->subject.damping;
+    ritz_path_range(path, out->range);
+    return RITZ_OK;
+}
+
+/* How many modes a cut basis has. */
+static ritz_status ask_modes(const simulation_task *d, ritz_sweep_request *out)
+{
+    const simulation_options *given = d->given;
+
+    out->modes = given->sweep_modes;
+    if (out->modes == 0)
+        out->up_to_hz =
+            given->up_to_hz > 0.0 ? given->up_to_hz : d->scene.band_hz[1];
+    RITZ_REFUSE_IF(
+        out->modes == 0 && !(out->up_to_hz > 0.0), RITZ_ERR_ARGUMENT,
+        "how many modes? give --sweep-modes, --up-to-hz, or a band in "
+        "the scene");
+    return RITZ_OK;
+}
+
+static ritz_status make_model(const simulation_task *d, const ritz_path *path,
+                              const sweep_basis *basis, ritz_swept_model *out)
+{
+    ritz_sweep_request asked = {0};
+    RITZ_OWN(ritz_comparison) comparison = {0};
+
+    RITZ_CHECK(ask_range(d, path, &asked));
+    if (basis->cut)
+        RITZ_CHECK(ask_modes(d, &asked));
+    if (!basis->one)
+        return ritz_stage_sweep(&d->stage, &asked, out);
+    RITZ_CHECK_IN("one basis", ritz_compare(&d->stage, &comparison));
+    asked.origin = &d->stage;
+    asked.V = comparison.V;
+    return ritz_stage_sweep(&comparison.second, &asked, out);
+}
+
+/* The largest rate of the setting, in x per second. */
+static double fastest_rate(const ritz_swept_model *m, const ritz_path *path)
+{
+    double fastest = 0.0;
+
+    for (int k = 0; k <= 1000; k++) {
+        double at[3];
+
+        ritz_path_at(path, path->seconds * k / 1001.0, at);
+        fastest = fmax(fastest, fabs(m->unit * at[1]));
+    }
+    return fastest;
+}
+
+/* Size of the model, how smooth it is, and how fast the joint moves. */
+static void say_model(cli_run *run, const sweep_basis *basis,
+                      const ritz_swept_model *m, const ritz_path *path)
+{
+    sink_field(run, "basis", "basis,modes,settings,interpolation",
+               "%s: %" PRId64 " modes, computed at %" PRId64
+               " settings of %s, interpolated to %.1e",
+               basis->name, m->order, m->count, m->sweep, m->error);
+    if (m->unit != 1.0 && m->start_hz[0] > 0.0)
+        sink_field(run, "rate", "rate,rate_ratio",
+                   "%.3g rad/s, %.2e of the lowest mode's",
+                   fastest_rate(m, path),
+                   fastest_rate(m, path) / (2.0 * RITZ_PI * m->start_hz[0]));
+}
+
+/* Largest difference of the mechanical energy, over its largest value. */
+static double compare_energies(const ritz_simulation *exact,
+                               const ritz_simulation *other)
+{
+    double size = 0.0, off = 0.0;
+
+    for (int64_t k = 0; k < exact->count; k++) {
+        double right = exact->kinetic[k] + exact->potential[k];
+
+        size = fmax(size, right);
+        off = fmax(off, fabs(other->kinetic[k] + other->potential[k] - right));
+    }
+    return size > 0.0 ? off / size : 0.0;
+}
+
+static ritz_status run_basis(const simulation_task *d, const ritz_path *path,
+                             const sweep_basis *basis,
+                             const ritz_simulation_request *request,
+                             ritz_simulation *out)
+{
+    RITZ_OWN(ritz_swept_model) made = {0};
+
+    RITZ_CHECK(make_model(d, path, basis, &made));
+    if (!request->from)
+        say_model(d->run, basis, &made, path);
+    return ritz_simulate_swept(&made, path, basis->terms, request, out);
+}
+
+/* The same run with the other basis, and how far they are apart. */
+static ritz_status compare_bases(simulation_task *d, const ritz_path *path,
+                                 const ritz_simulation_request *request,
+                                 const ritz_simulation *s)
+{
+    const sweep_basis *basis = find_basis(d->given->sweep_against);
+    ritz_simulation_request again = *request;
+    RITZ_OWN(ritz_simulation) other = {0};
+    double response = 0.0;
+
+    again.stop = NULL;
+    again.from = NULL;
+    RITZ_CHECK(run_basis(d, path, basis, &again, &other));
+    RITZ_CHECK(ritz_simulation_difference(&other, s, &response));
+    sink_field(d->run, "against", "against,response_error,energy_error",
+               "%s: outputs off by %.2e of their largest, energy by %.2e",
+               basis->name, response, compare_energies(&other, s));
+    return RITZ_OK;
+}
+
+ritz_status simulation_sweep(simulation_task *d,
+                             const ritz_simulation_request *request,
+                             ritz_simulation *out)
+{
+    RITZ_OWN(ritz_path) path = {0};
+    RITZ_OWN(ritz_simulation) s = {0};
+
+    RITZ_REFUSE_IF(d->stage.count == 0, RITZ_ERR_ARGUMENT,
+                   "--sweep needs a scene, whose joints move");
+    RITZ_CHECK(parse_path(d->given->sweep, &path));
+    RITZ_CHECK(
+        run_basis(d, &path, find_basis(d->given->sweep_basis), request, &s));
+    if (d->subject.damping)
+        ritz_damping_print(d->subject.damping, s.damping);
+    if (d->given->sweep_against && s.num_state == 0)
+        RITZ_CHECK(compare_bases(d, &path, request, &s));
+    RITZ_MOVE(*out, s);
+    return RITZ_OK;
+}
