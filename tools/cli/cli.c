@@ -12,7 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { MAX_OPTIONS = 48, EXIT_USAGE = 2, WORD = 32 };
+enum { MAX_OPTIONS = 80, EXIT_USAGE = 2, WORD = 32 };
 
 /* The tool's own options, then those that every tool has; ended by {0}. The
    first of these belongs to tools that compute with large models. */
