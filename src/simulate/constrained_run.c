@@ -12,6 +12,7 @@
 #include "base/alloc.h"
 #include "base/text.h"
 #include "base/tolerances.h"
+#include "linear/blas_threads.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -218,6 +219,10 @@ static void name_run(const ritz_constrained_request *how,
     integrator->name = name;
 }
 
+/* Coordinates up to which one thread does a run: a step takes microseconds,
+   and threads would wait for each. */
+enum { SMALL_RUN = 360 };
+
 static ritz_status label_run(const ritz_unjoined *bodies, ritz_simulation *s)
 {
     const ritz_second_order dense = {
@@ -240,8 +245,11 @@ ritz_status ritz_simulate_constrained(const ritz_unjoined *bodies,
     RITZ_OWN(ritz_constrained_facts) found = {0};
     RITZ_OWN(ritz_simulation) s = {0};
     ritz_stabiliser terms = {0};
+    [[maybe_unused]] RITZ_OWN(ritz_blas_single) single = {0};
     int64_t steps = 0;
 
+    if (bodies->n <= SMALL_RUN)
+        single = ritz_blas_single_new();
     RITZ_REFUSE_IF(request->coordinates, RITZ_ERR_ARGUMENT,
                    "coordinates are of joined bodies: run them without "
                    "constraints");
