@@ -51,7 +51,7 @@ typedef struct ritz_stabiliser {
     bool projects;    /* z and z' at the end of each step */
     bool implicit;    /* index 2: no terms, an integrator of its own */
     double stiffness, damping, inertia;
-    double stiffest; /* of c, with the steepest part of g */
+    double stiffest; /* with multipliers: of c, with the steepest part of g */
     double own[3];   /* of the law */
     /** g of one constraint, and its derivatives by c and c'; NULL: 0. */
     void (*law)(const struct ritz_stabiliser *s, double c, double rate,

@@ -39,7 +39,6 @@ static ritz_status find_penalty(const double *gain, ritz_stabiliser *out)
     RITZ_REFUSE_IF(!(w > 0.0), RITZ_ERR_ARGUMENT,
                    "a penalty has a frequency above 0: 'hz'");
     *out = (ritz_stabiliser){.stiffness = mass * w * w,
-                             .stiffest = mass * w * w,
                              .damping = mass * 2.0 * gain[1] * w,
                              .inertia = gain[2]};
     return RITZ_OK;
@@ -95,10 +94,8 @@ static ritz_status find_hybrid(const double *gain, ritz_stabiliser *out)
                    "a penalty has a frequency above 0: 'hz'");
     RITZ_REFUSE_IF(!(gain[2] > 0.0), RITZ_ERR_ARGUMENT,
                    "'smax' is positive; nothing is known to choose it from");
-    *out = (ritz_stabiliser){.stiffness = w * w,
-                             .stiffest = w * w,
-                             .law = damp_by_surface,
-                             .own = {gain[1], gain[2]}};
+    *out = (ritz_stabiliser){
+        .stiffness = w * w, .law = damp_by_surface, .own = {gain[1], gain[2]}};
     return RITZ_OK;
 }
 
