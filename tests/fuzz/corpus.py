@@ -365,7 +365,8 @@ TEXTS = {
               "choice band_hz 0,10\nchoice remainder static\nchoice sides two\n",
     "others": "tolerance frequency=1e-3,mac=0.99,gain=1e-6\ntolerance 0.01\n"
               "weights torque=1,gyro=0.5\nchannels a,b,c@0.5\n"
-              "damper strut=4*0.5\ndamper strut=1e3\nunits kg m s\nunits 126\n",
+              "damper strut=4*0.5\ndamper strut=1e3\nunits kg m s\nunits 126\n"
+              "constraints baumgarte:alpha=1,beta=2e3\nconstraints index-2\n",
 }
 
 # --- tools ----------------------------------------------------------------------------

@@ -5,6 +5,7 @@
 #include "import/import.h"
 
 #include <ritz/basis.h>
+#include <ritz/constrained.h>
 #include <ritz/export.h>
 #include <ritz/parts.h>
 #include <ritz/ranking.h>
@@ -235,6 +236,13 @@ static void read_units(const char *text)
     fuzz_judge(ritz_import_directions(text, want));
 }
 
+static void read_constraints(const char *text)
+{
+    ritz_constrained_request how = {0};
+
+    fuzz_judge(ritz_constrained_parse(text, &how));
+}
+
 static const struct option_reader {
     const char *word;
     void (*read)(const char *text);
@@ -242,7 +250,7 @@ static const struct option_reader {
     {"damping ", read_damping},   {"tolerance ", read_tolerance},
     {"choice ", read_choice},     {"weights ", read_weights},
     {"channels ", read_channels}, {"damper ", read_damper},
-    {"units ", read_units},
+    {"units ", read_units},       {"constraints ", read_constraints},
 };
 
 /* Lines "READER TEXT": each names the reader of its text. */

@@ -627,9 +627,11 @@ static void words_are_refused_by_name(void **state)
                {"penalty:hertz=3", "'penalty' has no parameter 'hertz'"},
                {"projection:hz=3", "'projection' has no parameter 'hz'"},
                {"penalty:hz", "'hz' is not NAME=VALUE"},
-               {"penalty:hz=x", "is a number, not 'x'"},
-               {"penalty:hz=-1", "is a number, not '-1'"},
-               {"penalty:hz=nan", "is a number, not 'nan'"}};
+               {"penalty:hz=x", "is a number of 0 or more, not 'x'"},
+               {"penalty:hz=-1", "is a number of 0 or more, not '-1'"},
+               {"penalty:hz=inf", "is a number of 0 or more, not 'inf'"},
+               {"penalty:", "'' is not NAME=VALUE"},
+               {"penalty:hz=nan", "is a number of 0 or more, not 'nan'"}};
     ritz_constrained_request how = {0};
 
     (void)state;
