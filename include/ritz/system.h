@@ -60,6 +60,8 @@ typedef struct ritz_system {
     double band_hz[2];
     char damping[RITZ_DAMPING_SIZE]; /* as ritz_damping_parse reads */
     char units[RITZ_NAME_SIZE];
+    char spin[4 * RITZ_NAME_SIZE]; /* that K, D and inputs have in them: model,
+                                      rad/s, axis; "": none */
 } ritz_system;
 
 /**

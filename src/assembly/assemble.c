@@ -21,6 +21,7 @@
 #include <ritz/matrix.h>
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -267,6 +268,21 @@ ritz_status ritz_stage_assemble_some(const ritz_stage *stage, int64_t count,
 
 /* A system over all configurations of a scene. */
 
+/* "consistent, 2 rad/s about (0 0 1) through (0 0 0)"; of a rate that changes
+   nothing, since the system is at rest. */
+static void describe_spin(const ritz_scene_spin *spin,
+                          char out[4 * RITZ_NAME_SIZE])
+{
+    const double *n = spin->axis, *c = spin->through;
+
+    if (spin->given && spin->rate.course == RITZ_SPIN_CONSTANT)
+        snprintf(out, 4 * RITZ_NAME_SIZE,
+                 "%s, %.17g rad/s about (%.6g %.6g %.6g) through (%.6g %.6g "
+                 "%.6g)",
+                 ritz_spin_model_name(spin->model), spin->rate.value[0], n[0],
+                 n[1], n[2], c[0], c[1], c[2]);
+}
+
 /* Names, orders, band and damping of the scene. */
 static ritz_status label_system(const ritz_stage *stage, ritz_system *system)
 {
@@ -275,6 +291,7 @@ static ritz_status label_system(const ritz_stage *stage, ritz_system *system)
     memcpy(system->name, scene->name, sizeof system->name);
     memcpy(system->band_hz, scene->band_hz, sizeof system->band_hz);
     ritz_damping_print(&scene->damping, system->damping);
+    describe_spin(&scene->spin, system->spin);
     if (stage->count > 0)
         memcpy(system->units, stage->body[0].units, sizeof system->units);
     RITZ_CHECK_NEW(system->component, stage->count);

@@ -136,6 +136,11 @@ static const ritz_schema configuration_schema = {
 
 /* The whole. */
 
+static bool has_spin(const void *object)
+{
+    return *((const ritz_system *)object)->spin;
+}
+
 static const ritz_member members[] = {
     {"name", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_system, name), "",
      "name of the scene"},
@@ -143,6 +148,10 @@ static const ritz_member members[] = {
      "damping, as `--damping` reads it; may be empty"},
     {"band_hz", ATTRIBUTE_REAL, RITZ_AT(ritz_system, band_hz), "2",
      "frequency band for which the system is made"},
+    {"spin", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_system, spin), "",
+     "spin that K, D and the input `centrifugal` have in them: model, rate and "
+     "axis",
+     .optional = "", .has = has_spin},
     {"sweeps", SET_NAMES, RITZ_AT(ritz_system, sweep), "w",
      "names of the settings of joints, such as `clock`, `wrist`, `wrist.2`"},
     {"blocks", LIST, RITZ_LIST(ritz_system, component), "b",

@@ -341,6 +341,12 @@ SCENE = {
              "damping: {rayleigh_fit: [[1, 0.01], [10, 0.02]]}\n"
              "inputs: [{name: u, at: a/p, component: 6}]\n"
              "select: {by: krylov, vectors: 6, start: both}\n",
+    "spin": "scene: blade\ncomponents:\n  a: {model: a.h5, stiffening: "
+            "{spin_zz: z, spin_xy: c, tip: t}}\n"
+            "spin: {axis: [0, 1, 2], through: [1, 0, 0], "
+            "profile: [[0, 0], [1, 2.5], [3, -1]]}\nspin_model: ruthless\n",
+    "ramp": "scene: s\ncomponents: {a: {model: a.h5}}\n"
+            "spin: {axis: [0, 0, 1], ramp: {to: 6, seconds: 15}}\n",
     "anchors": "scene: &x s\ncomponents: {a: {model: *x}}\n",
 }
 SIGNAL = {

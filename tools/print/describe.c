@@ -609,6 +609,8 @@ ritz_status describe_system(cli_run *run, const ritz_system *s)
     if (s->band_hz[1] > 0.0)
         sink_field(run, "band", "", "%g to %g Hz", s->band_hz[0],
                    s->band_hz[1]);
+    if (*s->spin)
+        sink_field(run, "spin", "spin", "%s", s->spin);
     describe_damping(run, s->damping);
     if (s->num_configurations > 0)
         describe_dampers(run, &s->configuration[0].dampers);

@@ -101,12 +101,15 @@ ritz_status spin_say(cli_run *run, const ritz_stage *stage,
                      const ritz_configuration *at)
 {
     const ritz_scene_spin *spin = &stage->scene->spin;
+    const double most = highest_rate(&spin->rate);
 
     if (!spin->given)
         return RITZ_OK;
-    sink_field(run, "spin", "spin_rate,spin_model",
-               "up to %.6g rad/s about its axis, %s", highest_rate(&spin->rate),
-               ritz_spin_model_name(spin->model));
+    sink_set(run, "spin_rate,spin_model", "%.6g %s", most,
+             ritz_spin_model_name(spin->model));
+    if (spin->rate.course != RITZ_SPIN_CONSTANT) /* else the system says so */
+        cli_say(run, "  %-14s up to %.6g rad/s, %s", "spin", most,
+                ritz_spin_model_name(spin->model));
     warn_of_model(run, spin->model);
     if (spin->model == RITZ_SPIN_CONSISTENT)
         warn_of_lacks(run, stage, at);

@@ -4,8 +4,9 @@
  */
 #include "testing.h"
 
+#include "assembly/assembly.h"
 #include "blade.h"
-#include "scene_texts.h"
+#include "scenes.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -155,18 +156,21 @@ static void stiffening_is_negligible_below_its_rate(void **)
     RITZ_OWN(ritz_stage) stage = {0};
     ritz_spin_limits limits = {0};
     double change = 0.0;
-    char text[2][200];
+    RITZ_OWN(ritz_configuration) with = {0}, without = {0};
+    char text[160];
 
     assert_ok(blade_stage(BLADE_SCENE "spin: {axis: [0, 0, 1], rate: 1}\n", 0,
                           &scene, &stage));
     assert_ok(ritz_stage_spin_limits(&stage, NULL, 0.01, &limits));
     assert_true(limits.stable > 100.0); /* of the rod, 157 */
-    snprintf(text[0], 160, "spin: {axis: [0, 0, 1], rate: %.17g}\n",
+    snprintf(text, sizeof text, "spin: {axis: [0, 0, 1], rate: %.17g}\n",
              limits.negligible);
-    snprintf(text[1], 200, "%.160sspin_model: inconsistent\n", text[0]);
-    RITZ_OWN(ritz_configuration) with = {0}, without = {0};
-    spin_blade(text[0], 0, &with);
-    spin_blade(text[1], 0, &without);
+    spin_blade(text, 0, &with);
+    snprintf(text, sizeof text,
+             "spin: {axis: [0, 0, 1], rate: %.17g}\n"
+             "spin_model: inconsistent\n",
+             limits.negligible);
+    spin_blade(text, 0, &without);
     for (int64_t j = 0; j < with.K.ncol; j++)
         change = fmax(change, sqrt(with.lambda[j] / without.lambda[j]) - 1.0);
     assert_true(change <= 0.01 * (1.0 + 1e-9));
@@ -188,6 +192,200 @@ static void the_inconsistent_model_says_where_it_fails(void **)
     assert_near(limits.stable, 3.5160167, 0.51e-7);
 }
 
+/* ---- what is outboard ---------------------------------------------------- */
+
+/* Three blades in a row along x: the tip of one holds the root of the next. */
+#define ROW                                                                    \
+    "scene: row\n"                                                             \
+    "components:\n"                                                            \
+    "  inner: {model: a.h5, basis: full, stiffening: {tip: tip}}\n"            \
+    "  middle: {model: a.h5, basis: full%s}\n"                                 \
+    "  outer: {model: a.h5, basis: full%s}\n"                                  \
+    "joints:\n"                                                                \
+    "  - {name: p, between: [inner/end, middle/root], type: fixed}\n"          \
+    "  - {name: q, between: [middle/end, outer/root], type: fixed}\n"          \
+    "spin: {axis: [0, 0, 1], rate: %g}\n"
+
+/* A stage of it: blades clamped at x = 0, of which the others have the port
+   "root" at their first free grid, which is at 1/12. */
+static ritz_status row_stage(const char *middle, const char *outer,
+                             ritz_scene *scene, ritz_stage *stage)
+{
+    char text[1000];
+    RITZ_OWN(ritz_bodies) body = {0};
+
+    snprintf(text, sizeof text, ROW, middle, outer, 1.0);
+    RITZ_CHECK(ritz_scene_parse("row.yaml", text, scene));
+    RITZ_CHECK(ritz_bodies_new(3, &body));
+    for (int k = 0; k < 3; k++) {
+        RITZ_OWN(ritz_component) beam = {0};
+
+        RITZ_CHECK(blade_component(&beam));
+        if (k > 0)
+            RITZ_CHECK(add_port(&beam, "root", 2));
+        RITZ_CHECK(reduce_with(&beam, &ritz_method_full, -1, &body.item[k]));
+        body.item[k].inertia = (ritz_inertia){
+            .mass = 1.0 + k, .centre = {0.5, 0.25, 0.0}, .known = true};
+    }
+    return ritz_stage_from(scene, body.item, stage);
+}
+
+/*
+ * The second blade begins at 1 - 1/12 and the third at twice that: centres at
+ * 0.5 + k 11/12 from the axis along x, whatever they are across. Masses are 2
+ * and 3.
+ */
+static void tension_is_of_all_that_is_outboard(void **)
+{
+    const double d = 11.0 / 12.0;
+    const double tension = 2.0 * (0.5 + d) + 3.0 * (0.5 + 2.0 * d);
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_spun) spun = {0};
+    RITZ_OWN(ritz_scene) plain = {0};
+    RITZ_OWN(ritz_stage) without = {0};
+    RITZ_OWN(ritz_spun) bare = {0};
+
+    assert_ok(row_stage("", "", &scene, &stage));
+    assert_ok(row_stage("", "", &plain, &without));
+    plain.component[0].stiffening[RITZ_STIFFENING_TIP][0] = 0;
+    assert_ok(ritz_stage_spun(&stage, NULL, &spun));
+    assert_ok(ritz_stage_spun(&without, NULL, &bare));
+    ritz_dense_add(-1.0, &bare.stage.body[0].K, &spun.stage.body[0].K);
+    ritz_dense_add(-tension, &stage.body[0].load[1].KG, &spun.stage.body[0].K);
+    assert_string_equal(stage.body[0].load[1].name, "tip");
+    assert_near(ritz_dense_max(&spun.stage.body[0].K), 0.0, /* eps of K */
+                1e-9);
+}
+
+static void a_tip_needs_one_joint_outboard(void **)
+{
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_spun) spun = {0};
+
+    assert_ok(row_stage("", ", stiffening: {tip: tip}", &scene, &stage));
+    assert_fails(ritz_stage_spun(&stage, NULL, &spun), RITZ_ERR_ARGUMENT,
+                 "component 'outer': 'tip' is of one joint that leads "
+                 "outboard, and there are 0");
+    stage.body[2].inertia.known = false;
+    scene.component[2].stiffening[RITZ_STIFFENING_TIP][0] = 0;
+    assert_fails(ritz_stage_spun(&stage, NULL, &spun), RITZ_ERR_ARGUMENT,
+                 "component 'inner': the mass of 'outer', which pulls its "
+                 "tip, is not known");
+}
+
+/* ---- what is refused ------------------------------------------------------ */
+
+static void refuse_blade(const char *text, const char *sentence)
+{
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    ritz_configuration c = {0};
+
+    assert_ok(blade_stage(text, 4, &scene, &stage));
+    assert_fails(ritz_stage_assemble(&stage, NULL, &c), RITZ_ERR_ARGUMENT,
+                 sentence);
+}
+
+static void what_does_not_fit_is_refused(void **)
+{
+    refuse_blade("scene: s\ncomponents:\n  blade: {model: b.h5, basis: full, "
+                 "stiffening: {spin_zz: spun}}\n"
+                 "spin: {axis: [0, 0, 1], rate: 1}\n",
+                 "component 'blade': spin_zz: unknown load 'spun', is 'spin' "
+                 "meant?");
+    refuse_blade(BLADE_SCENE "spin: {axis: [0, 0, 1], through: [0, 0.1, 0], "
+                             "rate: 1}\n",
+                 "its stiffening is of a spin about its basic origin, which is "
+                 "0.1 from the axis");
+    refuse_blade(BLADE_SCENE
+                 "spin: {axis: [0, 0, 1], rate: 1}\n"
+                 "inputs: [{name: centrifugal, at: blade/end, component: 2}]\n",
+                 "input 'centrifugal' is the load of the spin");
+}
+
+static void methods_that_know_no_spin_refuse_it(void **)
+{
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    ritz_comparison comparison = {0};
+    ritz_composite composite = {0};
+    ritz_component full = {0};
+    static const char sentence[] = "a scene that spins is for ritz-assemble";
+
+    assert_ok(blade_stage(BLADE_SCENE "spin: {axis: [0, 0, 1], rate: 1}\n", 4,
+                          &scene, &stage));
+    assert_fails(ritz_compare(&stage, &comparison), RITZ_ERR_ARGUMENT,
+                 sentence);
+    assert_fails(ritz_composite_new(&stage, &composite), RITZ_ERR_ARGUMENT,
+                 sentence);
+    assert_fails(ritz_assemble_full(&scene, NULL, &full, NULL),
+                 RITZ_ERR_ARGUMENT, sentence);
+}
+
+static void a_product_without_a_load_is_told(void **)
+{
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_configuration) c = {0};
+
+    assert_ok(blade_stage(BLADE_SCENE "spin: {axis: [0, 1, 1], rate: 1}\n", 4,
+                          &scene, &stage));
+    assert_ok(ritz_stage_assemble(&stage, NULL, &c));
+    assert_int_equal(ritz_stage_spin_lacks(&stage, &c, 0), RITZ_STIFFENING_YZ);
+    scene.spin.axis[1] = 0.0;
+    assert_int_equal(ritz_stage_spin_lacks(&stage, &c, 0),
+                     RITZ_NUM_STIFFENINGS);
+}
+
+/* Terms of a system, summed over bodies, are those of the bodies at a rate: K of
+   the system at rest and W^2 (S + KG) have the frequencies of the system at W. */
+static void terms_of_a_system_are_those_of_its_bodies(void **)
+{
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_configuration) rest = {0}, spun = {0};
+    RITZ_OWN(ritz_spin_terms) terms = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
+
+    assert_ok(blade_stage(BLADE_SCENE "spin: {axis: [0, 0, 1], rate: 3}\n", 6,
+                          &scene, &stage));
+    assert_ok(ritz_stage_assemble(&stage, NULL, &spun));
+    scene.spin.given = false;
+    assert_ok(ritz_stage_assemble(&stage, NULL, &rest));
+    assert_fails(ritz_stage_spin(&stage, &rest, &terms), RITZ_ERR_ARGUMENT,
+                 "the scene has no 'spin'");
+    scene.spin.given = true;
+    assert_ok(ritz_stage_spin(&stage, &rest, &terms));
+    ritz_dense_add(9.0, &terms.S, &rest.K);
+    ritz_dense_add(9.0, &terms.KG, &rest.K);
+    assert_ok(ritz_eigen_dense(&rest.K, &rest.M, &pairs));
+    for (int64_t j = 0; j < spun.K.ncol; j++) /* some eps of the largest */
+        assert_near(pairs.lambda[j], spun.lambda[j],
+                    1e-14 * spun.lambda[spun.K.ncol - 1]);
+}
+
+static ritz_status spin_and_limit(void *of)
+{
+    const ritz_stage *stage = of;
+    RITZ_OWN(ritz_configuration) c = {0};
+    ritz_spin_limits limits = {0};
+
+    RITZ_CHECK(ritz_stage_assemble(stage, NULL, &c));
+    return ritz_stage_spin_limits(stage, NULL, 0.01, &limits);
+}
+
+static void every_allocation_may_fail(void **)
+{
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+
+    assert_ok(blade_stage(BLADE_SCENE "spin: {axis: [0, 0, 1], rate: 1}\n", 4,
+                          &scene, &stage));
+    assert_survives_every_allocation(spin_and_limit(&stage));
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(the_rotating_cantilever_has_its_frequencies),
     cmocka_unit_test(without_stiffening_lead_lag_becomes_unstable),
@@ -196,6 +394,13 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_rod_stretches_as_it_should),
     cmocka_unit_test(stiffening_is_negligible_below_its_rate),
     cmocka_unit_test(the_inconsistent_model_says_where_it_fails),
+    cmocka_unit_test(tension_is_of_all_that_is_outboard),
+    cmocka_unit_test(a_tip_needs_one_joint_outboard),
+    cmocka_unit_test(what_does_not_fit_is_refused),
+    cmocka_unit_test(methods_that_know_no_spin_refuse_it),
+    cmocka_unit_test(a_product_without_a_load_is_told),
+    cmocka_unit_test(terms_of_a_system_are_those_of_its_bodies),
+    cmocka_unit_test(every_allocation_may_fail),
 };
 
 TEST_MODULE(spin_scene, tests, NULL, NULL)

@@ -413,6 +413,7 @@ static void compare_systems(bool full)
     }
     assert_memory_equal(a.band_hz, b.band_hz, sizeof a.band_hz);
     assert_string_equal(a.damping, b.damping);
+    assert_string_equal(a.spin, b.spin);
     assert_string_equal(a.units, b.units);
 }
 
