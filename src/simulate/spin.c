@@ -105,7 +105,8 @@ static ritz_status factor_step(ritz_march *march, const double mean[3])
     spun *s = march->own;
     RITZ_OWN(ritz_dense) A = {0};
 
-    if (s->factored && memcmp(mean, s->mean, sizeof s->mean) == 0)
+    if (s->factored && mean[0] == s->mean[0] && mean[1] == s->mean[1] &&
+        mean[2] == s->mean[2])
         return RITZ_OK;
     s->factored = false;
     ritz_general_factor_free(&s->F);

@@ -251,6 +251,7 @@ static void tension_is_of_all_that_is_outboard(void **)
     plain.component[0].stiffening[RITZ_STIFFENING_TIP][0] = 0;
     assert_ok(ritz_stage_spun(&stage, NULL, &spun));
     assert_ok(ritz_stage_spun(&without, NULL, &bare));
+    assert_true(stage.body && stage.body[0].num_loads == 2);
     ritz_dense_add(-1.0, &bare.stage.body[0].K, &spun.stage.body[0].K);
     ritz_dense_add(-tension, &stage.body[0].load[1].KG, &spun.stage.body[0].K);
     assert_string_equal(stage.body[0].load[1].name, "tip");
@@ -268,6 +269,7 @@ static void a_tip_needs_one_joint_outboard(void **)
     assert_fails(ritz_stage_spun(&stage, NULL, &spun), RITZ_ERR_ARGUMENT,
                  "component 'outer': 'tip' is of one joint that leads "
                  "outboard, and there are 0");
+    assert_true(stage.body && scene.component);
     stage.body[2].inertia.known = false;
     scene.component[2].stiffening[RITZ_STIFFENING_TIP][0] = 0;
     assert_fails(ritz_stage_spun(&stage, NULL, &spun), RITZ_ERR_ARGUMENT,

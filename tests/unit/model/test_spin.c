@@ -257,9 +257,12 @@ static void a_ramp_is_the_classical_spin_up(void **)
     double time = 15.0, value = 6.0;
     const ritz_spin_rate rate = {RITZ_SPIN_RAMP, 1, &time, &value};
 
-    for (double t = 0.5; t < 15.0; t += 1.0)
+    for (int k = 0; k < 15; k++) {
+        const double t = 0.5 + k;
+
         assert_near(ritz_spin_rate_at(&rate, t),
                     0.4 * (t - 7.5 / RITZ_PI * sin(RITZ_PI * t / 7.5)), 1e-14);
+    }
     assert_near(ritz_spin_rate_at(&rate, 20.0), 6.0, 1e-15);
     assert_near(ritz_spin_acceleration_at(&rate, 20.0), 0.0, 1e-15);
     assert_near(ritz_spin_angle_at(&rate, 20.0), 45.0 + 30.0, 1e-13);
