@@ -92,7 +92,8 @@ ritz_status ritz_controlled_refuse(const ritz_simulation_request *request,
  *
  * @param[in] seen  of ritz_controlled_examine; NULL: it is examined, and
  *                  refused, here
- * @return RITZ_ERR_ARGUMENT as ritz_simulate and ritz_controlled_refuse, if the
+ * @return RITZ_ERR_ARGUMENT as ritz_simulate and ritz_controlled_refuse, if an
+ *         impulse is measured directly, if the
  *         step does not divide sample and delay, or if `exact` is of too many
  *         states
  * @cost   a step of split: that of the integrator, and O((n + m) p + m^2) of m

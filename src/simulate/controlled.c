@@ -21,6 +21,26 @@ static ritz_status start_march(ritz_model subject, const ritz_motion *motion,
     return ritz_exact_start(motion, &plant, controlled, request->step, out);
 }
 
+/* What is measured of an impulse directly is one too, and not in a sample. */
+static ritz_status check_impulses(ritz_model subject, const ritz_motion *motion,
+                                  const ritz_simulation_request *request,
+                                  const ritz_loop *loop)
+{
+    const ritz_io io = ritz_model_io(subject);
+
+    for (int64_t j = 0; request->signal && j < motion->feed.ncol; j++)
+        for (int64_t k = 0; request->signal[j].kind == RITZ_SIGNAL_IMPULSE &&
+                            k < loop->num_measured;
+             k++)
+            RITZ_REFUSE_IF(
+                ritz_dense_col(&motion->feed, j)[loop->measured[k]] != 0.0,
+                RITZ_ERR_ARGUMENT,
+                "an impulse of '%s' is one in '%s' too, which the controller "
+                "measures",
+                io.input[j], io.output[loop->measured[k]]);
+    return RITZ_OK;
+}
+
 /* "modal, split" */
 static void name_run(const ritz_controlled *controlled,
                      const ritz_integrator *integrator, size_t size, char *out)
@@ -47,6 +67,7 @@ static ritz_status run_controlled(ritz_model subject,
     RITZ_CHECK(ritz_request_steps(request, &steps));
     RITZ_CHECK(ritz_controlled_check(subject, request, controlled));
     RITZ_CHECK(ritz_motion_new(subject, request, &motion));
+    RITZ_CHECK(check_impulses(subject, &motion, request, controlled->loop));
     motion.energies = motion.form != RITZ_FORM_STATES;
     motion.any_step = controlled->any_step;
     RITZ_CHECK(start_march(subject, &motion, request, controlled, &march));

@@ -24,10 +24,10 @@ void simulation_check_loop(const cli_program *program,
 }
 
 /* The step below which the split is stable, and what is said of this one. */
-static void say_split(cli_run *run, const ritz_outlook *seen)
+static void say_split(cli_run *run, bool sampled, const ritz_outlook *seen)
 {
-    sink_field(run, "one step", "spectral_radius", "spectral radius %.8g%s",
-               seen->radius,
+    sink_field(run, sampled ? "one sample" : "one step", "spectral_radius",
+               "spectral radius %.8g%s", seen->radius,
                seen->estimated ? ", by the growth of a vector" : "");
     if (isnan(seen->limit))
         return;
@@ -76,7 +76,7 @@ static ritz_status examine(simulation_task *d,
         cli_say(run, "the loop itself: its poles are not known, as the plant "
                      "is too large or the controller acts late");
     if (!controlled->exact)
-        say_split(run, &seen);
+        say_split(run, controlled->sample > 0.0, &seen);
     RITZ_CHECK(ritz_controlled_refuse(request, controlled, &seen));
     warn_of_growth(run, request->step, &seen);
     return RITZ_OK;

@@ -582,6 +582,18 @@ static void a_loop_too_large_for_one_exponential_is_refused(void **state)
         "exponential, which takes 400: use split");
 }
 
+static void an_impulse_that_is_measured_is_refused(void **state)
+{
+    static const ritz_signal impulse = {.kind = RITZ_SIGNAL_IMPULSE,
+                                        .amplitude = 1.0};
+    RITZ_OWN(rig) r = {0};
+
+    (void)state;
+    feedthrough(&r);
+    r.request.signal = &impulse;
+    refuse(&r, "too, which the controller measures");
+}
+
 static ritz_status run_all(const rig *r, bool exact)
 {
     ritz_controlled way = r->way;
@@ -620,6 +632,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(what_cannot_be_run_is_refused),
     cmocka_unit_test(a_singular_loop_of_feedthroughs_is_refused),
     cmocka_unit_test(a_loop_too_large_for_one_exponential_is_refused),
+    cmocka_unit_test(an_impulse_that_is_measured_is_refused),
     cmocka_unit_test(closed_loops_survive_every_failing_allocation),
 };
 
