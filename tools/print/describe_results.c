@@ -59,7 +59,7 @@ static void describe_diagnostics(cli_run *run, const ritz_simulation *s)
             least = fmin(least, last);
             most = fmax(most, last);
         }
-        sink_say(run, "name,least,most,last",
+        sink_say(run, ",name,least,most,last",
                  "  %-14s %-20s %.6g to %.6g, %.6g at the end",
                  j > 0 ? "" : "diagnostics", s->diagnostic[j], least, most,
                  last);

@@ -61,6 +61,8 @@ ritz_status simulation_sweep_prepare(cli_run *run, simulation_options *given)
             cli_refuse(run->program, "--sweep-... needs --sweep");
         return RITZ_OK;
     }
+    RITZ_REFUSE_IF(ritz_container_seems(run->operand[0]), RITZ_ERR_ARGUMENT,
+                   "'%s' is no scene, whose joints move", run->operand[0]);
     RITZ_CHECK(parse_path(given->sweep, &path));
     if (path.kind == RITZ_PATH_TABLE)
         RITZ_CHECK(cli_input(run, strchr(given->sweep, '=') + 1));
@@ -146,15 +148,16 @@ static double fastest_rate(const ritz_swept_model *m, const ritz_path *path)
     return fastest;
 }
 
-/* Size of the model, how smooth it is, and how fast the joint moves. */
-static void say_model(cli_run *run, const sweep_basis *basis,
+/* Size of the model, how smooth it is, and how fast the joint moves. What is
+   compared with says it in text alone. */
+static void say_model(cli_run *run, bool main, const sweep_basis *basis,
                       const ritz_swept_model *m, const ritz_path *path)
 {
-    sink_field(run, "basis", "basis,modes,settings,interpolation",
+    sink_field(run, "basis", main ? "basis,modes,settings,,interpolation" : "",
                "%s: %" PRId64 " modes, computed at %" PRId64
                " settings of %s, interpolated to %.1e",
                basis->name, m->order, m->count, m->sweep, m->error);
-    if (m->unit != 1.0 && m->start_hz[0] > 0.0)
+    if (main && m->unit != 1.0 && m->start_hz[0] > 0.0)
         sink_field(run, "rate", "rate,rate_ratio",
                    "%.3g rad/s, %.2e of the lowest mode's",
                    fastest_rate(m, path),
@@ -176,8 +179,8 @@ static double compare_energies(const ritz_simulation *exact,
     return size > 0.0 ? off / size : 0.0;
 }
 
-static ritz_status run_basis(const simulation_task *d, const ritz_path *path,
-                             const sweep_basis *basis,
+static ritz_status run_basis(const simulation_task *d, bool main,
+                             const ritz_path *path, const sweep_basis *basis,
                              const ritz_simulation_request *request,
                              ritz_simulation *out)
 {
@@ -185,7 +188,7 @@ static ritz_status run_basis(const simulation_task *d, const ritz_path *path,
 
     RITZ_CHECK(make_model(d, path, basis, &made));
     if (!request->from)
-        say_model(d->run, basis, &made, path);
+        say_model(d->run, main, basis, &made, path);
     return ritz_simulate_swept(&made, path, basis->terms, request, out);
 }
 
@@ -201,7 +204,7 @@ static ritz_status compare_bases(simulation_task *d, const ritz_path *path,
 
     again.stop = NULL;
     again.from = NULL;
-    RITZ_CHECK(run_basis(d, path, basis, &again, &other));
+    RITZ_CHECK(run_basis(d, false, path, basis, &again, &other));
     RITZ_CHECK(ritz_simulation_difference(&other, s, &response));
     sink_field(d->run, "against", "against,response_error,energy_error",
                "%s: outputs off by %.2e of their largest, energy by %.2e",
@@ -216,11 +219,9 @@ ritz_status simulation_sweep(simulation_task *d,
     RITZ_OWN(ritz_path) path = {0};
     RITZ_OWN(ritz_simulation) s = {0};
 
-    RITZ_REFUSE_IF(d->stage.count == 0, RITZ_ERR_ARGUMENT,
-                   "--sweep needs a scene, whose joints move");
     RITZ_CHECK(parse_path(d->given->sweep, &path));
-    RITZ_CHECK(
-        run_basis(d, &path, find_basis(d->given->sweep_basis), request, &s));
+    RITZ_CHECK(run_basis(d, true, &path, find_basis(d->given->sweep_basis),
+                         request, &s));
     if (d->subject.damping)
         ritz_damping_print(d->subject.damping, s.damping);
     if (d->given->sweep_against && s.num_state == 0)

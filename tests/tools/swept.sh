@@ -1,0 +1,63 @@
+#!/bin/sh
+# A joint that turns while the system vibrates. Usage: swept.sh
+# FOLDER-OF-THE-TOOLS
+. "$(dirname "$0")/tap.sh"
+. "$here/models.sh"
+
+import_spacecraft
+spacecraft scene 'band_hz: [0, 5]' \
+    'inputs: [{name: motor, at: rotor/bearing, component: 6, against: stator/bearing}]' \
+    'outputs: [{name: gyro, at: platform/scan, component: 6}]'
+run='--step 0.01 --input motor=sine:1 scene.yaml'
+
+expect 0 'JOINT=FROM:TO:TIME' ritz-simulate --help
+# shellcheck disable=SC2086
+{
+    json 0 ritz-simulate --sweep clock=0:60:4s:smooth --sweep-modes 14 \
+        --sweep-against full $run -o run.h5
+    holds 'a basis that is switched with the terms is near the full model' \
+        'j["basis"] == "switched" and j["modes"] == 14
+         and j["interpolation"] <= 1e-7 and j["against"] == "full"
+         and j["response_error"] < 0.05 and j["energy_error"] < 0.05
+         and j["diagnostics"][0]["name"] == "angle"'
+    json 0 ritz-simulate --sweep clock=0:60:4s:smooth --sweep-modes 14 \
+        --sweep-basis without-terms --sweep-against full $run -o wrong.h5
+    holds '  and without them is not' \
+        'j["response_error"] > 0.05 or j["energy_error"] > 0.05'
+    expect 0 'against        full' ritz-simulate \
+        --sweep clock=60:0:4s:smooth --sweep-basis one --sweep-against full \
+        $run -o one.h5
+    expect 0 'angle                0 to 60, 60 at the end' ritz-info run.h5
+    expect 0 'trapezoidal, step 0.01 s' ritz-info run.h5
+
+    # A file of times and settings; the path is as long as the run.
+    printf '0 10\n1 20\n2 15\n' >path.tsv
+    expect 0 '201 times to 2 s' ritz-simulate --sweep clock=path.tsv \
+        --sweep-modes 14 $run -o table.h5
+    expect 0 'path.tsv' ritz-info table.h5
+
+    # --- refusals -------------------------------------------------------------
+    expect 1 "unknown joint 'clok', is 'clock' meant?" ritz-simulate \
+        --sweep clok=0:60:4s $run -o no.h5
+    expect 1 "'0:0:4s' does not move: its range is empty" ritz-simulate \
+        --sweep clock=0:0:4s $run -o no.h5
+    expect 1 "'clock' is not JOINT=FROM:TO:TIME" ritz-simulate \
+        --sweep clock $run -o no.h5
+    expect 1 'stops with a jump of its rate' ritz-simulate \
+        --sweep clock=0:60:4s --seconds 5 --sweep-modes 14 $run -o no.h5
+    expect 1 'not by generalised-alpha' ritz-simulate --sweep clock=0:60:4s \
+        --method generalised-alpha --sweep-modes 14 $run -o no.h5
+    expect 2 '--sweep-... needs --sweep' ritz-simulate --seconds 1 \
+        --sweep-modes 14 $run -o no.h5
+    expect 2 '--damper has no effect' ritz-simulate --sweep clock=0:60:4s \
+        --damper a=1 $run -o no.h5
+    expect 1 'fewer than the 8 rigid motions' ritz-simulate \
+        --sweep clock=0:60:4s --sweep-modes 3 $run -o no.h5
+}
+expect 1 '--sweep needs --step' ritz-simulate --sweep clock=0:60:4s \
+    --input motor=step scene.yaml -o no.h5
+expect 1 "'rotor.h5' is no scene, whose joints move" ritz-simulate --sweep clock=0:60:4s \
+    --step 0.01 --initial mode:7 rotor.h5 -o no.h5
+works 'nothing is written where a run is refused' test ! -e no.h5
+
+echo "1..$count"
