@@ -1,0 +1,44 @@
+"""swept.py FOLDER-OF-THE-TOOLS - what leaving out the rates of a basis costs.
+
+The two beams of tests/failures/hinge.py, whose hinge turns from 0 to 90 degrees
+in several times while the first bending mode vibrates: each basis against the
+full model, which is integrated with the same step. Printed as Markdown.
+"""
+import pathlib
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "failures"))
+import failure
+import hinge
+
+BASES = (("switched", ("--sweep-modes", "10")),
+         ("without-terms", ("--sweep-modes", "10")), ("one", ()))
+
+
+def sweep(it, seconds, basis, options):
+    """What ritz-simulate says of a basis against the full model."""
+    return it.tool("simulate", "scene.yaml", "--sweep",
+                   f"twist=0:90:{seconds}s:smooth", "--step", "0.005",
+                   "--every", "20", "--initial", "mode:8", "--sweep-basis",
+                   basis, *options, "--sweep-against", "full", "-o", "run.h5")
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        it = failure.Failure("swept", pathlib.Path(sys.argv[1]).resolve(),
+                             pathlib.Path(folder))
+        hinge.scene(it, (0, 30, 60, 90), 4.0, "outputs: [{name: root, at: "
+                    "b/start, component: 2}]\n")
+        print("| turned in | rate over frequency | basis | modes | output off "
+              "by | energy off by |\n|---|---|---|---|---|---|")
+        for seconds in (2, 5, 20):
+            for basis, options in BASES:
+                said = sweep(it, seconds, basis, options)
+                print(f"| {seconds} s | {said['rate_ratio']:.2g} | {basis} | "
+                      f"{said['modes']} | {said['response_error']:.1e} | "
+                      f"{said['energy_error']:.1e} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
