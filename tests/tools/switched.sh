@@ -47,6 +47,42 @@ json 0 ritz-simulate $turn turn.h5 --damping 'rayleigh 10 0' \
 holds '  what a projection takes is in the balance' 'j["imbalance"] < 1e-9'
 expect 0 'energy lost at switches' ritz-info project.h5
 
+# The beam of 6.3: 10 to 15 of 30 modes while the load acts across at Emin 0.9
+# (not where it passes through 0), nearly all at 0.9999.
+ritz-import -q --stiffness beam.K.mtx --mass beam.M.mtx --dofs beam.dofs \
+    --input along=11:1 --input across=11:2 --output-at y=11:2 -o beam.h5
+for least in 0.9 0.9999; do
+    ritz-simulate -q beam.h5 --damping 'rayleigh 1 1e-3' --switched modes \
+        --switch-interval 0.01 --indicator $least --seconds 4 --step 0.0005 \
+        --every 20 --input along=along.tsv --input across=across.tsv \
+        -o beam-$least.h5
+    ritz-export -q --to tsv beam-$least.h5 -o beam-$least.tsv
+done
+# vectors FROM TO FILE: the median of what is used in intervals that end there
+vectors() {
+    awk -F '\t' -v from="$1" -v to="$2" 'NR == 1 {
+        for (j = 1; j <= NF; j++)
+            if ($j == "vectors")
+                at = j
+    }
+    NR > 1 && $1 > from + 1e-6 && $1 < to + 1e-6 { print $at + 0 }' "$3" |
+        sort -n | awk '{ v[NR] = $1 } END { print v[int((NR + 1) / 2)] }'
+}
+median=$(vectors 0 0.5 beam-0.9.tsv)
+works "10 to 15 modes at Emin 0.9 ($median)" \
+    test "$median" -ge 10 -a "$median" -le 15
+works 'all 20 that bend at Emin 0.9999' \
+    test "$(vectors 0 0.5 beam-0.9999.tsv)" -eq 20
+works 'and most of 30 once it is stretched' \
+    test "$(vectors 1 1.5 beam-0.9999.tsv)" -ge 24
+
+# A reduced component, and a run that is continued from its checkpoint.
+ritz-reduce -q turn.h5 basis.h5 -o reduced.h5
+works 'a reduced component is switched' ritz-simulate -q $turn reduced.h5 \
+    --damping 'rayleigh 10 0' --switched modes --switch-interval 0.02 \
+    --checkpoint kept.h5 -o reduced-run.h5
+works 'its checkpoint is removed' test ! -e kept.h5
+
 # --- refusals ----------------------------------------------------------------
 
 run="ritz-simulate $turn turn.h5 --switch-interval 0.02 -o x.h5"

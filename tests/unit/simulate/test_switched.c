@@ -305,6 +305,32 @@ static void a_set_is_propagated_as_its_reduced_model(void **state)
         assert_near(s.balance[k], 0.0, 1e-13);
 }
 
+/* A component, and its matrices as dense ones; accelerations are those of the
+   set. */
+static void a_component_is_switched_as_its_matrices(void **state)
+{
+    RITZ_OWN(motions) m = {0};
+    RITZ_OWN(ritz_dense) library = {0};
+    RITZ_OWN(ritz_simulation) dense = {0}, sparse = {0};
+    const ritz_simulation_request request = asking(3.0, 0.01, &motions_step);
+    const ritz_switched switched = {.num_libraries = 1,
+                                    .library = &library,
+                                    .interval = 0.03,
+                                    .least = 0.7,
+                                    .jump = RITZ_SWITCH_PROJECT};
+
+    (void)state;
+    assert_ok(motions_new(true, &m));
+    assert_ok(all_modes(&m, &library));
+    ritz_dense_col(&m.component.io.Ca, 1)[0] = 1.0;
+    assert_ok(
+        ritz_simulate_switched(m.dense, &request, &switched, NULL, &dense));
+    assert_ok(
+        ritz_simulate_switched(m.sparse, &request, &switched, NULL, &sparse));
+    assert_near(largest_error(&dense, &sparse, 0), 0.0, 1e-12);
+    assert_true(told(&dense, "switches", dense.count - 1) > 1.0);
+}
+
 static void projection_loses_what_it_says(void **state)
 {
     static const double v0[] = {1.0, -2.0, 0.5, 0.0, 1.0, 0.3};
@@ -657,6 +683,31 @@ static void ties_do_not_hang_on_rounding(void **state)
     }
 }
 
+/* The same set again and again, instead of others that are hardly better. */
+static void hysteresis_switches_less(void **state)
+{
+    static const double x0[] = {1.0, -1.0, 0.5, 1.0, -0.3, 0.2};
+    RITZ_OWN(refused) r = {0};
+    int64_t before = INT64_MAX;
+
+    (void)state;
+    assert_ok(refused_new(&r));
+    r.request.seconds = 4.0;
+    r.request.x0 = x0;
+    for (int k = 0; k < 3; k++) {
+        RITZ_OWN(ritz_simulation) s = {0};
+        ritz_switched_report report = {0};
+
+        r.switched.hysteresis = 0.45 * k;
+        assert_ok(ritz_simulate_switched(r.m.dense, &r.request, &r.switched,
+                                         &report, &s));
+        assert_true(report.num_switches < before);
+        before = report.num_switches;
+        for (int64_t i = 1; i < s.count; i++) /* it never takes too few */
+            assert_true(told(&s, "indicator", i) > 0.9 - 1e-9);
+    }
+}
+
 /* A force at rest decides nothing: the set of before is kept. */
 static void no_residual_changes_no_set(void **state)
 {
@@ -760,6 +811,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(simulation_a_keeps_its_second_basis_until_6_05_s),
     cmocka_unit_test(all_modes_are_the_full_model),
     cmocka_unit_test(a_set_is_propagated_as_its_reduced_model),
+    cmocka_unit_test(a_component_is_switched_as_its_matrices),
     cmocka_unit_test(projection_loses_what_it_says),
     cmocka_unit_test(no_checked_library_grows_in_1000_random_cases),
     cmocka_unit_test(two_stable_oscillators_grow_when_switched),
@@ -769,6 +821,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(sets_that_dwell_decay),
     cmocka_unit_test(a_state_space_is_refused),
     cmocka_unit_test(ties_do_not_hang_on_rounding),
+    cmocka_unit_test(hysteresis_switches_less),
     cmocka_unit_test(no_residual_changes_no_set),
     cmocka_unit_test(a_switched_run_is_continued_bit_for_bit),
     cmocka_unit_test(a_switched_run_survives_every_allocation),
