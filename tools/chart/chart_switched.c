@@ -10,7 +10,7 @@
 
 enum {
     MOST_RUNS = 8,
-    MOST_POINTS = 2000, /* points of a line; a page has fewer pixels */
+    MOST_POINTS = 600, /* points of a line; a page has hardly more pixels */
     WIDE = 700,
     HIGH = 440,
 };

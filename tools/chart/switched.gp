@@ -7,9 +7,7 @@ set yrange [0:most * 1.08 + 0.5]
 head = 'Vectors'
 eval heading
 plot for [w=0:runs - 1] data skip 1 using ($1 == w ? $2 : NaN):3 \
-    with fillsteps fs transparent solid 0.08 noborder lc rgb colour(w), \
-    for [w=0:runs - 1] data skip 1 using ($1 == w ? $2 : NaN):3 \
-    with lines lw 1.6 dt dash(w) lc rgb colour(w)
+    with fsteps lw 1.6 dt dash(w) lc rgb colour(w)
 eval panel(76, 48, wide - 22, body - 236)
 set xlabel 's'
 set logscale y
