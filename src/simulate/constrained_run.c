@@ -35,11 +35,10 @@ static ritz_status read_gain(char *word, ritz_constrained_request *how)
                    "'%s' has no parameter '%s'%s%s", how->method->name, word,
                    count > 0 ? ", its first is " : "",
                    count > 0 ? gain[0].name : "");
-    RITZ_REFUSE_IF(!ritz_text_real(equals + 1, &how->gain[k]) ||
-                       how->gain[k] < 0.0,
-                   RITZ_ERR_ARGUMENT,
-                   "'%s' of %s is a number of 0 or more, not '%s'", word,
-                   how->method->name, equals + 1);
+    RITZ_REFUSE_IF(
+        !ritz_text_real(equals + 1, &how->gain[k]) || how->gain[k] < 0.0,
+        RITZ_ERR_ARGUMENT, "'%s' of %s is a number of 0 or more, not '%s'",
+        word, how->method->name, equals + 1);
     return RITZ_OK;
 }
 

@@ -49,6 +49,7 @@ extern const simulation_kind simulation_kinds[];
 
 /** The bodies of a scene, joined over time as --constraints says. */
 simulation_function simulation_constrained;
+bool simulation_is_constrained(const simulation_options *given);
 
 /* A controller that is joined to the model. */
 bool simulation_is_controlled(const simulation_options *given);

@@ -102,6 +102,11 @@ static ritz_status refuse_options(const simulation_task *task)
     return RITZ_OK;
 }
 
+bool simulation_is_constrained(const simulation_options *given)
+{
+    return given->constraints;
+}
+
 ritz_status simulation_constrained(simulation_task *task,
                                    const ritz_simulation_request *request,
                                    ritz_simulation *out)

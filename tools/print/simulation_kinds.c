@@ -2,14 +2,9 @@
    with its functions, and a row. */
 #include "print/simulation.h"
 
-static bool has_constraints(const simulation_options *given)
-{
-    return given->constraints;
-}
-
 const simulation_kind simulation_kinds[] = {
     {.option = "--constraints",
-     .asked = has_constraints,
+     .asked = simulation_is_constrained,
      .simulate = simulation_constrained},
     {.option = "--switched",
      .asked = simulation_switched_asked,
