@@ -632,6 +632,8 @@ static ritz_status find_start(const sweeper *w, ritz_swept_model *m)
 static ritz_status check_sweep(const ritz_stage *stage,
                                const ritz_sweep_request *asked)
 {
+    RITZ_REFUSE_IF(stage->scene->spin.given, RITZ_ERR_ARGUMENT,
+                   "no joint is turned in a scene that spins");
     RITZ_REFUSE_IF(asked->sweep < 0 || asked->sweep >= stage->scene->num_sweeps,
                    RITZ_ERR_ARGUMENT, "the scene has no such joint");
     RITZ_REFUSE_IF(!(asked->range[1] > asked->range[0]), RITZ_ERR_ARGUMENT,

@@ -8,6 +8,8 @@
 #include "blade.h"
 #include "scenes.h"
 
+#include <ritz/swept.h>
+
 #include <math.h>
 #include <stdio.h>
 
@@ -314,6 +316,8 @@ static void methods_that_know_no_spin_refuse_it(void **)
     ritz_comparison comparison = {0};
     ritz_composite composite = {0};
     ritz_component full = {0};
+    const ritz_sweep_request sweep = {0};
+    ritz_swept_model swept = {0};
     static const char sentence[] = "a scene that spins is for ritz-assemble";
 
     assert_ok(blade_stage(BLADE_SCENE "spin: {axis: [0, 0, 1], rate: 1}\n", 4,
@@ -324,6 +328,8 @@ static void methods_that_know_no_spin_refuse_it(void **)
                  sentence);
     assert_fails(ritz_assemble_full(&scene, NULL, &full, NULL),
                  RITZ_ERR_ARGUMENT, sentence);
+    assert_fails(ritz_stage_sweep(&stage, &sweep, &swept), RITZ_ERR_ARGUMENT,
+                 "no joint is turned in a scene that spins");
 }
 
 static void a_product_without_a_load_is_told(void **)
