@@ -55,7 +55,8 @@ typedef struct ritz_outlook {
  * A step of which the sample and the delay are multiples: the longest that is
  * no longer than @p step.
  *
- * @return RITZ_ERR_ARGUMENT if there is none of at least a thousandth of it
+ * @return RITZ_ERR_ARGUMENT if there is none of at least a thousandth of it, or
+ *         among the next million of numbers of steps
  */
 ritz_status ritz_controlled_step(const ritz_controlled *controlled, double step,
                                  double *out);

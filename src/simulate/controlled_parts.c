@@ -40,27 +40,29 @@ ritz_status ritz_controlled_counts(const ritz_controlled *controlled,
 ritz_status ritz_controlled_step(const ritz_controlled *controlled, double step,
                                  double *out)
 {
-    enum { FINEST = 1000 };
+    enum { FINEST = 1000, MOST_TRIED = 1000000 };
     const double whole =
         controlled->sample > 0.0 ? controlled->sample : controlled->delay;
     const double first = ceil(whole / step - RITZ_STEP_ROUNDING);
-    int64_t late = 0;
+    int64_t late = 0, least = 0, most = 0;
 
     *out = step;
     if (!(whole > 0.0))
         return RITZ_OK;
     RITZ_REFUSE_IF(!(first < RITZ_MOST_STEPS), RITZ_ERR_ARGUMENT,
                    "%g steps in %g s are too many", first, whole);
-    for (double n = fmax(first, 1.0); n <= FINEST * fmax(first, 1.0);
-         n += 1.0) {
-        *out = whole / n;
+    least = first > 1.0 ? (int64_t)first : 1;
+    most = least > MOST_TRIED / FINEST ? least + MOST_TRIED : FINEST * least;
+    for (int64_t n = least; n <= most; n++) {
+        *out = whole / (double)n;
         if (is_whole(controlled->delay / *out, &late))
             return RITZ_OK;
     }
     return ritz_fail(RITZ_ERR_ARGUMENT,
                      "no step of at least %g s divides a sample of %g s and a "
                      "delay of %g s",
-                     step / FINEST, controlled->sample, controlled->delay);
+                     whole / (double)most, controlled->sample,
+                     controlled->delay);
 }
 
 ritz_status ritz_controlled_check(ritz_model subject,

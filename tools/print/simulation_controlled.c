@@ -82,15 +82,15 @@ static ritz_status examine(simulation_task *d,
     return RITZ_OK;
 }
 
-ritz_status simulation_prepare_loop(simulation_task *d)
+ritz_status simulation_prepare_loop(simulation_task *task)
 {
-    const loop_options *given = &d->given->loops;
+    const loop_options *given = &task->given->loops;
     ritz_io inner = {0}; /* borrowed */
 
-    RITZ_CHECK(
-        model_read(d->run, given->controller, MODEL_STATES, &d->controller));
-    inner = ritz_model_io(model_reference(&d->controller));
-    return loop_join(d->run, given, &d->io, &inner, &d->loop);
+    RITZ_CHECK(model_read(task->run, given->controller, MODEL_STATES,
+                          &task->controller));
+    inner = ritz_model_io(model_reference(&task->controller));
+    return loop_join(task->run, given, &task->io, &inner, &task->loop);
 }
 
 ritz_status simulation_controlled(simulation_task *d,

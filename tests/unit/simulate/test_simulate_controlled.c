@@ -319,6 +319,15 @@ static void any_integrator_moves_the_plant(void **state)
     }
 }
 
+static void refuse(rig *r, const char *words)
+{
+    RITZ_OWN(ritz_simulation) s = {0};
+
+    assert_fails(
+        ritz_simulate_controlled(r->subject, &r->request, &r->way, NULL, &s),
+        RITZ_ERR_ARGUMENT, words);
+}
+
 /* x' = r - 3 x split: x_1 = (1 - 3 h) x_0, unstable from 2/3 s on. */
 static void the_limit_of_an_integrator_is_two_over_its_gain(void **state)
 {
@@ -396,6 +405,32 @@ static void a_split_that_hides_an_unstable_loop_is_named(void **state)
         RITZ_ERR_ARGUMENT, "it grows without bound");
     r.way.force = true;
     simulate(&r, &s);
+}
+
+/* w = 50 rad/s at a damping of -0.01, w h = 2.5: what generalised-alpha takes
+   of what the step does not resolve is more than the loop gives; the trapezoidal
+   rule takes nothing, and shows it. */
+static void a_dissipative_integrator_that_hides_it_is_named(void **state)
+{
+    static const double m = 1.0, k = 2500.0, c = -1.0, gain = 1.0;
+    static const spaces_rows gains = {0, 1, 1, NULL, NULL, NULL, &gain, NULL};
+    RITZ_OWN(rig) r = {0};
+    ritz_outlook seen = {0};
+
+    (void)state;
+    assert_ok(motions_row(1, &m, &k, &c, &r.row));
+    r.subject = r.row.dense;
+    assert_ok(spaces_make(&gains, &r.controller));
+    join(false, &r);
+    ask(10.0, 0.05, &r);
+    r.request.integrator = &ritz_integrator_generalised_alpha;
+    r.request.rho = 0.5;
+    assert_ok(ritz_controlled_examine(r.subject, &r.request, &r.way, &seen));
+    assert_true(seen.hides);
+    refuse(&r, "a step of 0.05 s would hide that");
+    r.request.integrator = &ritz_integrator_trapezoidal;
+    assert_ok(ritz_controlled_examine(r.subject, &r.request, &r.way, &seen));
+    assert_false(seen.hides);
 }
 
 /* 90 masses, 180 states and more: growth of a vector, beside the radius that
@@ -494,15 +529,6 @@ static void steps_are_cut_to_sample_and_delay(void **state)
     way = (ritz_controlled){.sample = 1.0, .delay = 0.70710678118654752};
     assert_fails(ritz_controlled_step(&way, 1.0, &step), RITZ_ERR_ARGUMENT,
                  "no step of at least 0.001 s divides");
-}
-
-static void refuse(rig *r, const char *words)
-{
-    RITZ_OWN(ritz_simulation) s = {0};
-
-    assert_fails(
-        ritz_simulate_controlled(r->subject, &r->request, &r->way, NULL, &s),
-        RITZ_ERR_ARGUMENT, words);
 }
 
 static void what_cannot_be_run_is_refused(void **state)
@@ -626,6 +652,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(the_limit_of_an_integrator_is_two_over_its_gain),
     cmocka_unit_test(the_limit_of_three_masses_is_that_of_their_map),
     cmocka_unit_test(a_split_that_hides_an_unstable_loop_is_named),
+    cmocka_unit_test(a_dissipative_integrator_that_hides_it_is_named),
     cmocka_unit_test(a_large_map_is_judged_by_the_growth_of_a_vector),
     cmocka_unit_test(a_loop_continues_bit_for_bit),
     cmocka_unit_test(steps_are_cut_to_sample_and_delay),
