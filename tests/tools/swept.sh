@@ -24,7 +24,7 @@ expect 0 'JOINT=FROM:TO:TIME' ritz-simulate --help
         --sweep-basis without-terms --sweep-against full $run -o wrong.h5
     holds '  and without them is not' \
         'j["response_error"] > 0.05 or j["energy_error"] > 0.05'
-    expect 0 'against        full' ritz-simulate \
+    expect 0 '8 rigid motions: forces of the commanded motion' ritz-simulate \
         --sweep clock=60:0:4s:smooth --sweep-basis one --sweep-against full \
         $run -o one.h5
     expect 0 'angle                0 to 60, 60 at the end' ritz-info run.h5

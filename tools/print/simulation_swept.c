@@ -212,6 +212,20 @@ static ritz_status compare_bases(simulation_task *d, const ritz_path *path,
     return RITZ_OK;
 }
 
+/* Rigid motions, whose error does not shrink with a frequency. */
+static void warn_of_rigid(const simulation_task *d)
+{
+    const int64_t count = d->m.system.configuration[0].num_rigid;
+
+    if (count > 0)
+        cli_warn(
+            d->run,
+            "%" PRId64 " rigid motions: forces of the commanded motion "
+            "that turn with the bodies are left out, and rigid motions are "
+            "off by about the square of the angle",
+            count);
+}
+
 ritz_status simulation_sweep(simulation_task *d,
                              const ritz_simulation_request *request,
                              ritz_simulation *out)
@@ -224,6 +238,8 @@ ritz_status simulation_sweep(simulation_task *d,
                          request, &s));
     if (d->subject.damping)
         ritz_damping_print(d->subject.damping, s.damping);
+    if (s.num_state == 0)
+        warn_of_rigid(d);
     if (d->given->sweep_against && s.num_state == 0)
         RITZ_CHECK(compare_bases(d, &path, request, &s));
     RITZ_MOVE(*out, s);
