@@ -46,6 +46,39 @@ static const cli_program program = {
     .threads = true,
 };
 
+/* What every run has. */
+#define RUN_OPTIONS(it)                                                        \
+    CLI_TEXT("method", &(it)->method, "NAME", "integrator, one of --list"),    \
+        CLI_REAL("seconds", &(it)->seconds, "T", 1e-12, 1e12,                  \
+                 "duration of the simulation, seconds"),                       \
+        CLI_REAL("step", &(it)->step, "H", 1e-15, 1e12,                        \
+                 "time step in seconds [chosen by --accuracy]"),               \
+        CLI_FLAG("any-step", &(it)->any_step,                                  \
+                 "accept a step at which constraints or a split loop are not " \
+                 "stable, to see it fail"),                                    \
+        CLI_REAL("accuracy", &(it)->accuracy, "X", 1e-12, 1.0,                 \
+                 "halve the step until outputs are within X of their "         \
+                 "largest [1e-3]"),                                            \
+        CLI_LIST("input", &(it)->input, "NAME=SIGNAL",                         \
+                 "step, impulse, sine:F or chirp:F,F, each with "              \
+                 "*AMPLITUDE if not 1, or a file of times and values"),        \
+        CLI_TEXT("initial", &(it)->initial, "TEXT",                            \
+                 "mode:K or mode:K*AMPLITUDE, or a file with a value and "     \
+                 "its rate on each row"),                                      \
+        CLI_WORD("hold", &(it)->hold, "first|zero",                            \
+                 "inputs within a step: linear, or constant as at its "        \
+                 "start"),                                                     \
+        CLI_REAL("rho", &(it)->rho, "R", 0.0, 1.0,                             \
+                 "spectral radius of generalised-alpha at high frequency"),    \
+        CLI_INT("every", &(it)->every, "N", 1, 1e9,                            \
+                "with --step, write every N-th step"),                         \
+        CLI_REAL("up-to-hz", &(it)->up_to_hz, "F", 1e-9, 1e9,                  \
+                 "modes of a component up to here, for --method modal"),       \
+        CLI_FLAG(                                                              \
+            "coordinates", &(it)->coordinates,                                 \
+            "store the coordinates of a reduced component or system too, "     \
+            "for ritz-recover")
+
 /* A controller that is joined to the model. */
 #define LOOP_OPTIONS_IN_TIME(it)                                               \
     CLI_TEXT("controller", &(it)->loops.controller, "FILE",                    \
@@ -138,35 +171,7 @@ int main(int argc, char **argv)
                                 .share_of = "model",
                                 .sweep_basis = "switched"};
     const cli_option options[] = {
-        CLI_TEXT("method", &given.method, "NAME", "integrator, one of --list"),
-        CLI_REAL("seconds", &given.seconds, "T", 1e-12, 1e12,
-                 "duration of the simulation, seconds"),
-        CLI_REAL("step", &given.step, "H", 1e-15, 1e12,
-                 "time step in seconds [chosen by --accuracy]"),
-        CLI_FLAG("any-step", &given.any_step,
-                 "accept a step at which constraints or a split loop are not "
-                 "stable, to see it fail"),
-        CLI_REAL("accuracy", &given.accuracy, "X", 1e-12, 1.0,
-                 "halve the step until outputs are within X of their "
-                 "largest [1e-3]"),
-        CLI_LIST("input", &given.input, "NAME=SIGNAL",
-                 "step, impulse, sine:F or chirp:F,F, each with "
-                 "*AMPLITUDE if not 1, or a file of times and values"),
-        CLI_TEXT("initial", &given.initial, "TEXT",
-                 "mode:K or mode:K*AMPLITUDE, or a file with a value and "
-                 "its rate on each row"),
-        CLI_WORD("hold", &given.hold, "first|zero",
-                 "inputs within a step: linear, or constant as at its "
-                 "start"),
-        CLI_REAL("rho", &given.rho, "R", 0.0, 1.0,
-                 "spectral radius of generalised-alpha at high frequency"),
-        CLI_INT("every", &given.every, "N", 1, 1e9,
-                "with --step, write every N-th step"),
-        CLI_REAL("up-to-hz", &given.up_to_hz, "F", 1e-9, 1e9,
-                 "modes of a component up to here, for --method modal"),
-        CLI_FLAG("coordinates", &given.coordinates,
-                 "store the coordinates of a reduced component or system too, "
-                 "for ritz-recover"),
+        RUN_OPTIONS(&given),
         LOOP_OPTIONS_IN_TIME(&given),
         CONSTRAINT_OPTIONS(&given),
         SWITCHING_OPTIONS(&given),

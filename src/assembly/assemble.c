@@ -276,7 +276,7 @@ static void describe_spin(const ritz_scene_spin *spin,
     const double *n = spin->axis, *c = spin->through;
 
     if (spin->given && spin->rate.course == RITZ_SPIN_CONSTANT)
-        snprintf(out, 4 * RITZ_NAME_SIZE,
+        snprintf(out, (size_t)4 * RITZ_NAME_SIZE,
                  "%s, %.17g rad/s about (%.6g %.6g %.6g) through (%.6g %.6g "
                  "%.6g)",
                  ritz_spin_model_name(spin->model), spin->rate.value[0], n[0],

@@ -49,7 +49,7 @@ typedef struct ritz_motion {
 ritz_status ritz_motion_dense(ritz_model subject, bool modal, ritz_motion *out);
 
 /** Modal, of modes as they are: what @p modes owns moves over. */
-ritz_status ritz_motion_take(ritz_modal_model *modes, ritz_motion *out);
+ritz_status ritz_motion_take(ritz_modal_model *modes, ritz_motion *m);
 
 /** Whichever of them a subject and an integrator ask for. */
 ritz_status ritz_motion_new(ritz_model subject,

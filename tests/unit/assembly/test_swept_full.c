@@ -150,7 +150,7 @@ static double leap(const ritz_swept_model *m, const ritz_path *path, double h,
     before = last.val;
     for (int64_t n = 0; n <= steps; n++) {
         RITZ_OWN(ritz_dense) ahead = {0}, back = {0}, MT = {0}, F = {0};
-        RITZ_OWN(ritz_dense) R = {0}, Bf = {0};
+        RITZ_OWN(ritz_dense) Bf = {0};
         const double f = sin(2.0 * RITZ_PI * 0.7 * h * (double)n);
 
         ritz_path_at(path, h * (double)n, at);

@@ -531,7 +531,8 @@ static void default_parameters_fit_the_step(void **state)
     assert_ok(joined_new(true, &j));
     for (const ritz_stabilisation *const *m = ritz_stabilisations; *m; m++)
         for (int i = 0; i < 3; i++)
-            for (double h = 0.1; h > 1e-3; h *= 0.25) {
+            for (int k = 0; k < 4; k++) {
+                const double h = 0.1 * pow(0.25, k);
                 ritz_simulation_request request = asking(all[i], h);
                 RITZ_OWN(ritz_simulation) s = {0};
 
