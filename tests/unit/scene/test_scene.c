@@ -188,7 +188,8 @@ static void bad_keys_are_refused(void **)
         {"scene: a\ncomponents: {a: {modez: 2, modes: 1}}\n",
          "s:2:18: unknown key 'modez', is 'model' meant?"},
         {"scene: a\ncomponents: {a: {model: m, q: 2}}\n",
-         "s:2:28: unknown key 'q', there is model, basis, order, modes, "
+         "s:2:28: unknown key 'q', there is model, basis, order, "
+         "stiffening, modes, "
          "up_to_hz, attach, shift_hz, loads, inner, interface_modes, gramian, "
          "operator, damping, engine, among_hz, band_hz, remainder, count, "
          "accuracy, sides"},
@@ -202,7 +203,8 @@ static void bad_keys_are_refused(void **)
         {"[a]: b\n", "s:1:1: a word or number is expected here, not a list"},
         {"<<: {a: b}\n",
          "s:1:1: unknown key '<<', there is scene, plane, components, joints, "
-         "configurations, inputs, outputs, band_hz, damping, select, "
+         "configurations, inputs, outputs, band_hz, damping, spin, "
+         "spin_model, select, "
          "composite, augment, extraneous"},
         {SMALL "joints: [{between: [a/x, b/x], type: fixed}]\n",
          "s:6:10: key 'name' is missing"},
