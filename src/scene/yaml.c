@@ -433,7 +433,8 @@ static ritz_status take_word(const ritz_yaml *yaml, const yaml_node_t *node,
 ritz_status ritz_yaml_value(const ritz_yaml *yaml, const yaml_node_t *node,
                             const ritz_yaml_key *key, void *object)
 {
-    void *field = (char *)object + key->offset;
+    /* keys that are all taken later need no object */
+    void *field = object ? (char *)object + key->offset : NULL;
 
     switch (key->kind) {
     case RITZ_YAML_LATER:
