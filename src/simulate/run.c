@@ -251,6 +251,13 @@ static ritz_status end_early(ritz_march *march, double energy, int64_t count,
     return RITZ_OK;
 }
 
+/* memcpy that takes NULL for no values, as containers have it. */
+static void copy_values(double *to, const double *from, int64_t count)
+{
+    if (count > 0)
+        memcpy(to, from, (size_t)count * sizeof *to);
+}
+
 /* Outputs of time k, behind them the coordinates and their rates. */
 static void copy_outputs(const ritz_simulation *from, int64_t k,
                          ritz_simulation *s)
@@ -259,30 +266,29 @@ static void copy_outputs(const ritz_simulation *from, int64_t k,
     const double *const parts[] = {from->q, from->v, from->a};
     double *y = s->y + k * s->num_outputs;
 
-    memcpy(y, from->y + k * from->num_outputs,
-           (size_t)from->num_outputs * sizeof *y);
+    copy_values(y, from->y + k * from->num_outputs, from->num_outputs);
     y += from->num_outputs;
     for (int j = 0; n > 0 && j < 3; j++, y += n)
-        memcpy(y, parts[j] + k * n, (size_t)n * sizeof *y);
+        copy_values(y, parts[j] + k * n, n);
 }
 
 /* All that an earlier run has stored. */
 static void copy_times(const ritz_simulation *from, ritz_simulation *s)
 {
-    const size_t times = (size_t)from->count * sizeof(double);
     const double *const energies[] = {from->kinetic, from->potential,
                                       from->dissipated, from->work,
                                       from->balance};
     double *const into[] = {s->kinetic, s->potential, s->dissipated, s->work,
                             s->balance};
 
-    memcpy(s->seconds, from->seconds, times);
-    memcpy(s->u, from->u, times * (size_t)s->num_inputs);
-    memcpy(s->diagnosis, from->diagnosis, times * (size_t)s->num_diagnostics);
+    copy_values(s->seconds, from->seconds, from->count);
+    copy_values(s->u, from->u, from->count * s->num_inputs);
+    copy_values(s->diagnosis, from->diagnosis,
+                from->count * s->num_diagnostics);
     for (int64_t k = 0; k < from->count; k++)
         copy_outputs(from, k, s);
     for (int e = 0; s->balance && e < 5; e++)
-        memcpy(into[e], energies[e], times);
+        copy_values(into[e], energies[e], from->count);
 }
 
 /* Whether a run that ended early is one of this march and request. */
