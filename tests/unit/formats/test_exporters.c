@@ -45,13 +45,13 @@ static bool says(const ritz_export_report *report, const char *words)
 static void rows_to_recover_that_are_left_out_are_named(void **state)
 {
     static const ritz_exporter *const bodies[] = {
-        &ritz_exporter_42,     &ritz_exporter_chrono,  &ritz_exporter_dmig,
-        &ritz_exporter_exudyn, &ritz_exporter_fxbody,  &ritz_exporter_mbdyn,
-        &ritz_exporter_sid,    &ritz_exporter_simscape};
+        &ritz_exporter_42,     &ritz_exporter_chrono,   &ritz_exporter_dmig,
+        &ritz_exporter_exudyn, &ritz_exporter_fxbody,   &ritz_exporter_mbdyn,
+        &ritz_exporter_sid,    &ritz_exporter_simscape, NULL};
     const moving_body *of = *state;
     const ritz_reduced reduced = with_rows(of);
 
-    for (size_t k = 0; k < sizeof bodies / sizeof *bodies; k++) {
+    for (size_t k = 0; bodies[k]; k++) {
         RITZ_OWN(ritz_export_report) report = {0}, without = {0};
 
         assert_ok(export_to(bodies[k], &reduced, NULL, &report));

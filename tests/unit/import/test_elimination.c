@@ -247,6 +247,22 @@ static void circles_of_many_are_refused(void **)
                  "that is solved");
 }
 
+enum { RANDOM_DOFS = 60, RANDOM_TERMS = 3 };
+
+/* An equation of dof `dependent` with terms that a generator chooses. */
+static void add_random_equation(const ritz_dof dof[static RANDOM_DOFS],
+                                int64_t dependent, uint64_t *seed,
+                                ritz_equations *eq)
+{
+    assert_ok(ritz_equations_begin(eq, dof[dependent]));
+    for (int j = 0; j < RANDOM_TERMS; j++) {
+        *seed = *seed * 6364136223846793005U + 1442695040888963407U;
+        assert_ok(ritz_equations_add(eq, dof[(*seed >> 33) % RANDOM_DOFS],
+                                     ((double)((*seed >> 20) % 1000) - 500.0) /
+                                         4000.0));
+    }
+}
+
 /*
  * Whatever the graph is, G solves the equations: u_m - R u = 0 for u = G u_n.
  * Shares up to 1/8 of at most three keep I - R_mm well conditioned, so that
@@ -254,7 +270,7 @@ static void circles_of_many_are_refused(void **)
  */
 static void random_equations_hold_for_every_motion(void **)
 {
-    enum { ALL = 60, DEPENDENT = 25, SEEDS = 200 };
+    enum { ALL = RANDOM_DOFS, DEPENDENT = 25, SEEDS = 200 };
     uint64_t seed = 7;
 
     for (int s = 0; s < SEEDS; s++) {
@@ -267,15 +283,8 @@ static void random_equations_hold_for_every_motion(void **)
             dof[k] = (ritz_dof){100 - k, 0};
         assert_ok(ritz_equations_cite_next(
             &eq, (ritz_equation_source){.name = "MPC 1", .file = -1}));
-        for (int64_t k = 0; k < DEPENDENT; k++) {
-            assert_ok(ritz_equations_begin(&eq, dof[2 * k]));
-            for (int j = 0; j < 3; j++) {
-                seed = seed * 6364136223846793005U + 1442695040888963407U;
-                assert_ok(ritz_equations_add(
-                    &eq, dof[(seed >> 33) % ALL],
-                    ((double)((seed >> 20) % 1000) - 500.0) / 4000.0));
-            }
-        }
+        for (int64_t k = 0; k < DEPENDENT; k++)
+            add_random_equation(dof, 2 * k, &seed, &eq);
         assert_ok(ritz_elimination_new(&eq, ALL, dof, NULL, &e));
         assert_ok(ritz_sparse_dense(&e.G, &G));
         for (int64_t j = 0; j < G.ncol; j++)
