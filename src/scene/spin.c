@@ -99,7 +99,7 @@ static ritz_status take_ramp(const ritz_yaml *yaml, const yaml_node_t *node,
 
     RITZ_CHECK(make_room(1, rate));
     RITZ_CHECK(
-        ritz_yaml_mapping(yaml, node, NUM_RAMP_KEYS, ramp_keys, NULL, value));
+        ritz_yaml_mapping(yaml, node, NUM_RAMP_KEYS, ramp_keys, rate, value));
     RITZ_CHECK(ritz_yaml_real(yaml, value[TO], rate->value));
     RITZ_CHECK(ritz_yaml_real(yaml, value[SECONDS], rate->time));
     RITZ_REFUSE_AT(!(rate->time[0] > 0.0), yaml, value[SECONDS],

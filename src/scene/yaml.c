@@ -433,8 +433,7 @@ static ritz_status take_word(const ritz_yaml *yaml, const yaml_node_t *node,
 ritz_status ritz_yaml_value(const ritz_yaml *yaml, const yaml_node_t *node,
                             const ritz_yaml_key *key, void *object)
 {
-    /* keys that are all taken later need no object */
-    void *field = object ? (char *)object + key->offset : NULL;
+    void *field = (char *)object + key->offset;
 
     switch (key->kind) {
     case RITZ_YAML_LATER:
