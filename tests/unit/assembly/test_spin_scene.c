@@ -1,6 +1,6 @@
 /*
- * Scenes that spin: the rotating cantilever of oracles section 4, which scenes
- * are refused, and what tension outboard bodies make.
+ * Scenes that spin: frequencies of a rotating cantilever, the tension that
+ * outboard bodies cause, and which scenes are refused.
  */
 #include "testing.h"
 
@@ -26,8 +26,8 @@ static void spin_blade(const char *more, int64_t modes, ritz_configuration *out)
 
 enum { LEAD_LAG, FLAP };
 
-/* Frequency k, from 0, of bending within the plane of rotation, or out of it: at
-   each the first is the lower one. A negative square has a negative sign. */
+/* Frequency k, from 0, of bending in the plane of rotation, which is the lower
+   one of each pair, or out of it. Of a negative square the sign is negative. */
 static double bending(const ritz_configuration *c, int way, int64_t k)
 {
     const double lambda = c->lambda[2 * k + way];
@@ -35,12 +35,12 @@ static double bending(const ritz_configuration *c, int way, int64_t k)
     return copysign(sqrt(fabs(lambda)), lambda);
 }
 
-/* Digits as the oracle has them: half a unit of the last. */
-typedef struct oracle {
+/* Frequencies by an independent program, and the unit of their last digits. */
+typedef struct reference {
     double rate, flap[3], last[3], lead_lag, lead_lag_last;
-} oracle;
+} reference;
 
-static const oracle rows[] = {
+static const reference rows[] = {
     {0.0,
      {3.5160167, 22.034845, 61.704878},
      {1e-7, 1e-6, 1e-6},
@@ -134,9 +134,9 @@ static void a_system_that_spins_has_gyroscopic_terms_and_a_load(void **)
     assert_int_equal(ruthless.io.num_inputs, 1);
 }
 
-/* The static stretch of a rod: u(1) = W^2 rho A L^3 / (3 E A), which linear
-   elements have exactly at their nodes if loads are consistent. */
-static void a_rod_stretches_as_it_should(void **)
+/* A rod stretches statically by u(1) = W^2 rho A L^3 / (3 E A); linear elements
+   with consistent loads are exact at their nodes. */
+static void a_rod_stretches_by_its_closed_form(void **)
 {
     RITZ_OWN(ritz_configuration) c = {0};
     double u = 0.0;
@@ -150,8 +150,8 @@ static void a_rod_stretches_as_it_should(void **)
     assert_near(u, 0.25 / 3e4, 1e-15);
 }
 
-/* Up to that rate no frequency of the band changes by more, and at it one
-   changes by nearly as much. */
+/* Up to the rate that is printed no frequency of the band changes by more than
+   allowed, and at that rate one changes by nearly as much. */
 static void stiffening_is_negligible_below_its_rate(void **)
 {
     RITZ_OWN(ritz_scene) scene = {0};
@@ -179,7 +179,7 @@ static void stiffening_is_negligible_below_its_rate(void **)
     assert_true(change > 0.0095); /* measured 0.0099: the bound is close */
 }
 
-/* Without KG the limit is that of the first mode in the plane. */
+/* Without KG stiffness is definite up to the first frequency in the plane. */
 static void the_inconsistent_model_says_where_it_fails(void **)
 {
     RITZ_OWN(ritz_scene) scene = {0};
@@ -208,8 +208,8 @@ static void the_inconsistent_model_says_where_it_fails(void **)
     "  - {name: q, between: [middle/end, outer/root], type: fixed}\n"          \
     "spin: {axis: [0, 0, 1], rate: %g}\n"
 
-/* A stage of it: blades clamped at x = 0, of which the others have the port
-   "root" at their first free grid, which is at 1/12. */
+/* A stage of the row. All blades are clamped at x = 0; the second and third
+   have the port "root" at their first free grid, which is at 1/12. */
 static ritz_status row_stage(const char *middle, const char *outer,
                              ritz_scene *scene, ritz_stage *stage)
 {
@@ -233,9 +233,9 @@ static ritz_status row_stage(const char *middle, const char *outer,
 }
 
 /*
- * The second blade begins at 1 - 1/12 and the third at twice that: centres at
- * 0.5 + k 11/12 from the axis along x, whatever they are across. Masses are 2
- * and 3.
+ * The second blade begins at 1 - 1/12 and the third at twice that, so that
+ * their centres have the distances 0.5 + k 11/12 from the axis along x. Their
+ * positions across x do not matter. Masses are 2 and 3.
  */
 static void tension_is_of_all_that_is_outboard(void **)
 {
@@ -292,7 +292,7 @@ static void refuse_blade(const char *text, const char *sentence)
                  sentence);
 }
 
-static void what_does_not_fit_is_refused(void **)
+static void scenes_that_cannot_spin_are_refused(void **)
 {
     refuse_blade("scene: s\ncomponents:\n  blade: {model: b.h5, basis: full, "
                  "stiffening: {spin_zz: spun}}\n"
@@ -332,7 +332,7 @@ static void methods_that_know_no_spin_refuse_it(void **)
                  "no joint is turned in a scene that spins");
 }
 
-static void a_product_without_a_load_is_told(void **)
+static void a_product_without_a_load_is_named(void **)
 {
     RITZ_OWN(ritz_scene) scene = {0};
     RITZ_OWN(ritz_stage) stage = {0};
@@ -347,8 +347,8 @@ static void a_product_without_a_load_is_told(void **)
                      RITZ_NUM_STIFFENINGS);
 }
 
-/* Terms of a system, summed over bodies, are those of the bodies at a rate: K of
-   the system at rest and W^2 (S + KG) have the frequencies of the system at W. */
+/* K of the system at rest with W^2 (S + KG), summed over bodies, has the
+   frequencies of the system that was assembled at the rate W. */
 static void terms_of_a_system_are_those_of_its_bodies(void **)
 {
     RITZ_OWN(ritz_scene) scene = {0};
@@ -399,14 +399,14 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(without_stiffening_lead_lag_becomes_unstable),
     cmocka_unit_test(the_first_mode_has_its_stiffening),
     cmocka_unit_test(a_system_that_spins_has_gyroscopic_terms_and_a_load),
-    cmocka_unit_test(a_rod_stretches_as_it_should),
+    cmocka_unit_test(a_rod_stretches_by_its_closed_form),
     cmocka_unit_test(stiffening_is_negligible_below_its_rate),
     cmocka_unit_test(the_inconsistent_model_says_where_it_fails),
     cmocka_unit_test(tension_is_of_all_that_is_outboard),
     cmocka_unit_test(a_tip_needs_one_joint_outboard),
-    cmocka_unit_test(what_does_not_fit_is_refused),
+    cmocka_unit_test(scenes_that_cannot_spin_are_refused),
     cmocka_unit_test(methods_that_know_no_spin_refuse_it),
-    cmocka_unit_test(a_product_without_a_load_is_told),
+    cmocka_unit_test(a_product_without_a_load_is_named),
     cmocka_unit_test(terms_of_a_system_are_those_of_its_bodies),
     cmocka_unit_test(every_allocation_may_fail),
 };

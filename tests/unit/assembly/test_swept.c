@@ -1,5 +1,5 @@
-/* Joints that move: what is known in closed form of a pendulum that keeps its
-   plane and of a body whose inertia changes. */
+/* Joints that move, against closed forms: a pendulum that keeps its plane in
+   space, and a body whose inertia changes. */
 #include <ritz/swept.h>
 
 #include "base/alloc.h"
@@ -20,8 +20,8 @@
 
 static const int64_t in_plane[3] = {1, 2, 6};
 
-/* Grid 1 of a little mass, and at a distance of 1 grid 2 of mass 2 on springs
-   of 8 along x and 8 b along y: 2 and 2 sqrt(b) rad/s. */
+/* Grid 1 has a small mass. Grid 2, at a distance of 1, has the mass 2 on
+   springs of 8 along x and 8 b along y: 2 and 2 sqrt(b) rad/s. */
 static ritz_status make_oscillator(double b, ritz_component *out)
 {
     const double c = -8.0, d = 8.0 * b;
@@ -77,7 +77,7 @@ static ritz_status join(const ritz_component body[2], const char *joint,
     return ritz_stage_from(&out->scene, reduced.item, &out->stage);
 }
 
-/* x0 of displacements or rates u of all bodies' coordinates. */
+/* x0 for displacements or velocities u of the coordinates of all bodies. */
 static ritz_status modal_start(const moving *m, double setting, const double *u,
                                double **out)
 {
@@ -100,8 +100,8 @@ static ritz_status modal_start(const moving *m, double setting, const double *u,
     return RITZ_OK;
 }
 
-/* A pendulum on a hinge with a body that hardly moves; the hinge turns at 30
-   degrees a second from 10. */
+/* A pendulum on a hinge with a body so heavy that it hardly moves. The hinge
+   turns from 10 degrees at 30 degrees a second. */
 static ritz_status make_pendulum(double b, moving *m)
 {
     RITZ_OWN(ritz_component) first = {0}, second = {0};
@@ -144,9 +144,10 @@ static ritz_status swing(const moving *m, bool terms, double step,
     return RITZ_OK;
 }
 
-/* Largest error of the plane that is kept in space: with w = 2 rad/s and the
-   hinge turned by a, x = cos a cos w t, y = -sin a cos w t along the axes of B.
-   In these it turns; in a program without the terms it does not. */
+/* Largest error of the motion in a plane that is constant in space. With w = 2
+   rad/s and the hinge turned by a it is x = cos a cos w t, y = -sin a cos w t
+   along the axes of B, in which the plane turns; `turns` false: in which it
+   does not, as without the terms. */
 static double plane_error(const ritz_simulation *s, bool turns)
 {
     double worst = 0.0;
@@ -195,8 +196,8 @@ static void without_the_terms_the_plane_turns_with_the_body(void **state)
     assert_true(plane_error(&s, true) > 0.9);
 }
 
-/* In axes that turn at a' the acceleration along x is x'' of x = cos a' t cos w
-   t, as the sensor moves with them. */
+/* The sensor turns with its axes at a'. Along x it measures the second
+   derivative of x = cos a' t cos w t. */
 static void accelerations_are_those_of_the_coordinates(void **state)
 {
     RITZ_OWN(moving) m = {0};
@@ -216,9 +217,9 @@ static void accelerations_are_those_of_the_coordinates(void **state)
     }
 }
 
-/* A ring of inertia 3 on whose arm a mass slides from 1 to 2: its spin w keeps
-   I w, I = J + mu d^2, mu = 2 1.5 / 3.5. At one rate, as the force of a mass that
-   is accelerated turns with the ring, which is left out. */
+/* A mass slides from 1 to 2 along the arm of a ring of inertia 3. I w is
+   conserved, with I = J + mu d^2 and mu = 2 1.5 / 3.5. The mass slides at a
+   constant rate, since the forces of an accelerated one are left out. */
 static ritz_status make_skater(moving *m)
 {
     RITZ_OWN(ritz_component) first = {0}, second = {0};
@@ -280,7 +281,8 @@ static void a_mass_that_slides_outwards_slows_the_spin(void **state)
     }
     assert_true(s.count == 1001 && worst > 0.0 &&
                 worst < 1e-5); /* h^2 of x''' of order 1 */
-    /* without the terms the energy stays, as T'M T does, and not the momentum */
+    /* without the terms energy is conserved, since T'M T is constant, and the
+       momentum is not */
     assert_true(wrong < 1e-6);
 }
 

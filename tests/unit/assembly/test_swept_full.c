@@ -1,5 +1,5 @@
-/* Joints that move, held to a full model that is integrated without any rate of
-   its basis; what is refused. */
+/* Joints that move, against a full model that is integrated without the rates
+   of its basis; what is refused. */
 #include "simulate/swept.h"
 
 #include "base/tolerances.h"
@@ -56,7 +56,7 @@ static ritz_status run_rig(const moving *m, const ritz_damping *damping,
     return ritz_simulate_swept(&model, &path, true, &request, out);
 }
 
-/* Energy that a run does not account for, of its largest. */
+/* Largest balance of energies, relative to the largest energy. */
 static double imbalance(const ritz_simulation *s)
 {
     double size = 0.0, off = 0.0;
@@ -117,8 +117,8 @@ static void add_load(const ritz_dense *T, const ritz_dense *A, double factor,
         sum[j] += factor * load.val[j];
 }
 
-/* Products in space of motions at a setting and at one that is further by d: M
-   exp(d N). */
+/* M exp(d N): products, in space, of motions at a setting with those at a
+   setting larger by d. */
 static void mass_across(const ritz_swept_model *m, double d, ritz_dense *out)
 {
     assert_ok(ritz_dense_copy(&m->M, out));
@@ -127,12 +127,13 @@ static void mass_across(const ritz_swept_model *m, double d, ritz_dense *out)
 }
 
 /*
- * The full model without a rate of T or of frames: with w = exp(x N) T q in
- * space and bases T_n alone,
+ * The full model without rates of T or of frames. With w = exp(x N) T q in
+ * space and the bases T_n of all steps,
  *
  *     T_n'exp(x_n N)'M (w_n+1 - 2 w_n + w_n-1) / h^2 + T_n'K T_n q_n = T_n'B f
  *
- * in which q_n+1 stands in T_n'M_d T_n+1. Explicit, of second order. From rest.
+ * which is solved for q_n+1, whose matrix is T_n'M_d T_n+1. The scheme is
+ * explicit, of second order, and starts from rest.
  */
 static double leap(const ritz_swept_model *m, const ritz_path *path, double h,
                    int64_t steps)
@@ -217,7 +218,7 @@ static void all_modes_with_the_terms_are_the_full_model(void **state)
     assert_true(last < 1e-4);
 }
 
-static void without_the_terms_they_are_not(void **state)
+static void without_the_terms_all_modes_are_another_model(void **state)
 {
     const ritz_sweep_request asked = moving_sweep(&rig_start, 20.0, 65.0);
     ritz_simulation_request request = moving_request(0.6, 0.0005);
@@ -277,8 +278,8 @@ static void a_run_continues_bit_for_bit(void **state)
                         (size_t)(3 * whole.count) * sizeof(double));
 }
 
-/* The basis of a rig at a setting is that of its modes there. */
-static void the_spline_is_as_good_as_it_says(void **state)
+/* Between knots the spline has the frequencies of the modes at that setting. */
+static void the_spline_is_as_accurate_as_it_reports(void **state)
 {
     const double between = 33.3;
     ritz_sweep_request asked = moving_sweep(&rig_start, 20.0, 65.0);
@@ -307,7 +308,8 @@ static void the_spline_is_as_good_as_it_says(void **state)
         assert_near(pairs.lambda[k] / c.lambda[k], 1.0, 1e-9);
 }
 
-/* A band that ends between a mode's frequencies at both ends of a range. */
+/* The band ends between the frequencies that a mode has at the ends of the
+   range. */
 static void a_mode_that_leaves_the_band_is_named(void **state)
 {
     const double ends[2] = {20.0, 65.0};
@@ -336,7 +338,7 @@ static void a_mode_that_leaves_the_band_is_named(void **state)
                  words[1]);
 }
 
-static void what_makes_no_model_is_refused(void **state)
+static void requests_without_a_model_are_refused(void **state)
 {
     ritz_sweep_request asked = moving_sweep(&rig_start, 20.0, 20.0);
     RITZ_OWN(moving) m = {0};
@@ -370,7 +372,7 @@ static void what_makes_no_model_is_refused(void **state)
                  "structural damping of 'B'");
 }
 
-static void what_makes_no_run_is_refused(void **state)
+static void paths_and_requests_without_a_run_are_refused(void **state)
 {
     const ritz_sweep_request asked = moving_sweep(&rig_start, 20.0, 65.0);
     ritz_simulation_request request = moving_request(1.0, 0.01);
@@ -404,12 +406,12 @@ static void what_makes_no_run_is_refused(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(energies_balance_to_the_order_of_the_step),
     cmocka_unit_test(all_modes_with_the_terms_are_the_full_model),
-    cmocka_unit_test(without_the_terms_they_are_not),
+    cmocka_unit_test(without_the_terms_all_modes_are_another_model),
     cmocka_unit_test(a_run_continues_bit_for_bit),
-    cmocka_unit_test(the_spline_is_as_good_as_it_says),
+    cmocka_unit_test(the_spline_is_as_accurate_as_it_reports),
     cmocka_unit_test(a_mode_that_leaves_the_band_is_named),
-    cmocka_unit_test(what_makes_no_model_is_refused),
-    cmocka_unit_test(what_makes_no_run_is_refused),
+    cmocka_unit_test(requests_without_a_model_are_refused),
+    cmocka_unit_test(paths_and_requests_without_a_run_are_refused),
 };
 
 TEST_MODULE(swept_full, tests, NULL, NULL)

@@ -1,7 +1,7 @@
 /*
- * Bodies of a scene as they are before they are joined: the joined system comes
- * back from them, redundant rows of loops are named, and a loop that is closed
- * to rounded digits has the same rank.
+ * Bodies of a scene before they are joined: their constraints give the joined
+ * system, redundant rows of loops are named, and a loop that closes only to
+ * rounded digits has the same rank.
  */
 #include "testing.h"
 
@@ -24,7 +24,8 @@ static const char joints[] =
     "- {name: d, between: [D/g1, A/g2], type: hinge, axis: [0, 0, 1], "
     "state: caged, stiffness: 4, damping: 2}\n";
 
-/* Ground A, crank B, coupler C, rocker D: 3, 1, 3.1 and 1.2 long. */
+/* Four-bar linkage of ground A, crank B, coupler C and rocker D, whose lengths
+   are 3, 1, 3.1 and 1.2. */
 static ritz_status build_linkage(ritz_scene *scene, ritz_stage *stage)
 {
     static const double end[LINKS][2] = {
@@ -103,8 +104,9 @@ static void assert_joins(const ritz_unjoined *u, const ritz_configuration *c,
     assert_near(ritz_dense_max(&C), 0.0, 1e3 * DBL_EPSILON);
 }
 
-/* Rigid links in space close a plane loop with 17 rows of 20, three of them the
-   last hinge's: its place along the axis, and both turns across it. */
+/* Rigid links in space close a plane loop. Of 20 rows 17 are independent: those
+   of the last hinge for the position along its axis and for both rotations
+   across the axis follow from the others. */
 static void assert_loop(const ritz_stage *stage, const char *at)
 {
     ritz_simulation_request request = RITZ_SIMULATION_NONE;
@@ -137,7 +139,7 @@ static void assert_loop(const ritz_stage *stage, const char *at)
                 1e-9 * facts.joined_hz);
 }
 
-static void loops_name_what_they_state_twice(void **state)
+static void redundant_rows_of_a_loop_are_named(void **state)
 {
     RITZ_OWN(ritz_scene) scene = {0};
     RITZ_OWN(ritz_stage) stage = {0};
@@ -151,7 +153,7 @@ static void loops_name_what_they_state_twice(void **state)
     }
 }
 
-static void a_spacecraft_comes_back_from_its_bodies(void **state)
+static void bodies_and_constraints_give_the_joined_system(void **state)
 {
     double setting[2] = {60.0, 0.0};
     RITZ_OWN(ritz_scene) scene = {0};
@@ -170,7 +172,7 @@ static void a_spacecraft_comes_back_from_its_bodies(void **state)
     assert_true(u.D.val == NULL);
 }
 
-/* P'AP of an A that need not be symmetric. */
+/* P'AP; A need not be symmetric. */
 static void project(const ritz_dense *A, const ritz_dense *P, ritz_dense *out)
 {
     RITZ_OWN(ritz_dense) AP = {0};
@@ -179,8 +181,8 @@ static void project(const ritz_dense *A, const ritz_dense *P, ritz_dense *out)
     assert_ok(ritz_dense_mul_tn(P, &AP, out));
 }
 
-/* Centrifugal and gyroscopic terms are in K and D, the load is one more input. */
-static void a_spin_is_in_the_bodies(void **state)
+/* Spin terms are in K and D, and the centrifugal load is one more input. */
+static void matrices_of_the_bodies_include_a_spin(void **state)
 {
     RITZ_OWN(ritz_scene) scene = {0};
     RITZ_OWN(ritz_stage) stage = {0};
@@ -234,7 +236,7 @@ static ritz_status try_unjoined(const ritz_stage *stage, const double *setting,
     return ritz_stage_unjoined(stage, setting, c, &stage->scene->damping, &u);
 }
 
-static void it_survives_every_allocation(void **state)
+static void unjoined_bodies_survive_every_allocation(void **state)
 {
     double setting[LINKS] = {0.0};
     char at[256];
@@ -251,11 +253,11 @@ static void it_survives_every_allocation(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(loops_name_what_they_state_twice),
-    cmocka_unit_test(a_spacecraft_comes_back_from_its_bodies),
-    cmocka_unit_test(a_spin_is_in_the_bodies),
+    cmocka_unit_test(redundant_rows_of_a_loop_are_named),
+    cmocka_unit_test(bodies_and_constraints_give_the_joined_system),
+    cmocka_unit_test(matrices_of_the_bodies_include_a_spin),
     cmocka_unit_test(structural_damping_is_refused),
-    cmocka_unit_test(it_survives_every_allocation),
+    cmocka_unit_test(unjoined_bodies_survive_every_allocation),
 };
 
 TEST_MODULE(unjoined, tests, NULL, NULL)

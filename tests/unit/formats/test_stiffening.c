@@ -1,7 +1,7 @@
 /*
- * A cantilever that turns, through Standard Input Data: its frequencies with the
- * geometric stiffness of the file are those of a program that has no reader and
- * no modes; forces on a node; matrices by name; formats that have no place.
+ * Geometric stiffness in exported files: frequencies of a turning cantilever
+ * from Standard Input Data agree with those of an independent program; forces
+ * on a node; matrices by name; formats without a place for it.
  */
 #include "testing.h"
 
@@ -66,8 +66,8 @@ static void write_sid(const ritz_reduced *reduced, const char *stiffening,
     sid_file_read(folder_path("column.SID_FEM"), out);
 }
 
-/* Lowest frequency of Ke + w^2 Oe_zz, modes of unit mass: the frame turns at a
-   constant rate, without gyroscopic terms. */
+/* Lowest frequency of Ke + w^2 Oe_zz for modes of unit mass: the frame turns at
+   a constant rate, and gyroscopic terms are left out. */
 static double turning(const sid_file *f, double rate)
 {
     const int64_t m = f->num_modes;
@@ -105,7 +105,7 @@ static void a_turning_cantilever_is_as_stiff_as_tension_makes_it(void **state)
 }
 
 /* sqrt(3.5160167^2 - 4^2) is imaginary: -3.64 is its square. */
-static void without_stiffening_it_diverges(void **state)
+static void without_stiffening_the_cantilever_diverges(void **state)
 {
     RITZ_OWN(sid_file) f = {0};
     double w = 0.0;
@@ -150,7 +150,8 @@ static void a_force_on_a_node_buckles_the_body_of_the_file(void **state)
     assert_true(softened(&f, 5.0) > softened(&f, 0.0));
 }
 
-/* Other terms of the frame's motion are where they belong. */
+/* Terms of acceleration, angular acceleration and products of rates are in Ct,
+   Cr and Oe. */
 static void accelerations_are_in_their_terms(void **state)
 {
     RITZ_OWN(sid_file) bare = {0}, f = {0};
@@ -250,7 +251,7 @@ static void stiffening_survives_every_allocation(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_turning_cantilever_is_as_stiff_as_tension_makes_it),
-    cmocka_unit_test(without_stiffening_it_diverges),
+    cmocka_unit_test(without_stiffening_the_cantilever_diverges),
     cmocka_unit_test(a_force_on_a_node_buckles_the_body_of_the_file),
     cmocka_unit_test(accelerations_are_in_their_terms),
     cmocka_unit_test(matrices_are_written_by_their_names),

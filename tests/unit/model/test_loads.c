@@ -1,5 +1,5 @@
-/* Geometric stiffness follows every change of coordinates as stiffness does:
-   where KG = K, it stays K. */
+/* Geometric stiffness is projected as stiffness is: if KG = K in a model, it is
+   so in each model that is made of it. */
 #include "testing.h"
 
 #include "masses.h"
@@ -13,8 +13,8 @@
 
 enum { ORDER = 4, COLUMNS = 3 };
 
-/* A chain held to ground, with its own K as the geometric stiffness of "spin"
-   and twice that as that of "tip". */
+/* A chain held to ground. Its geometric stiffness is K for the load "spin" and
+   2 K for "tip". */
 static ritz_status loaded_chain(ritz_component *out)
 {
     static const double m[] = {1, 2, 1, 3}, k[] = {5, 9, 7, 8};

@@ -1,5 +1,5 @@
 /*
- * Terms of a spin, against sums over the points of a body; rates over time,
+ * Terms of a spin against sums over the points of a body; rates over time
  * against their definitions.
  */
 #include "testing.h"
@@ -54,7 +54,7 @@ static ritz_status cloud_new(cloud *out)
     return RITZ_OK;
 }
 
-/* What the definitions say of one point. */
+/* Add the terms of one point by their definitions. */
 static void add_point(const cloud *c, int64_t k, double G[DRAFT_COLUMNS][5],
                       double S[DRAFT_COLUMNS][5], double load[2][5])
 {
@@ -123,8 +123,8 @@ static void gyroscopic_terms_are_skew_and_softening_symmetric(void **)
                         -ritz_dense_col(&terms.G, i)[j], draft_rounding);
 }
 
-/* Turning about the axis itself: S of it is -J, its Euler load -J, and its
-   centrifugal load 0; J is the inertia. */
+/* For a rotation about the axis itself S is -J, the Euler load -J and the
+   centrifugal load 0; J is the moment of inertia. */
 static void a_rigid_turn_has_the_inertia(void **)
 {
     RITZ_OWN(cloud) c = {0};
@@ -156,7 +156,7 @@ static void a_rigid_turn_has_the_inertia(void **)
     assert_near(terms.G.val[0], 0.0, draft_rounding * J);
 }
 
-static void a_model_keeps_its_terms_alone(void **)
+static void a_spin_model_keeps_only_its_terms(void **)
 {
     for (int model = 0; model < 3; model++) {
         RITZ_OWN(ritz_spin_terms) terms = {0};
@@ -217,9 +217,9 @@ static void a_model_without_terms_has_no_limits(void **)
     assert_true(isinf(limits.stable) && isinf(limits.negligible));
 }
 
-/* The derivative is that of the rate, and the rate that of the angle, by central
-   differences over h: an error of h^2 / 6 times third derivatives, of (2 pi)^2 2 for the ramp
-   that takes a second. */
+/* The acceleration is the derivative of the rate, and the rate that of the
+   angle. Central differences over h have an error of h^2 / 6 times third
+   derivatives, which are (2 pi)^2 2 for a ramp of a second. */
 static void assert_courses_agree(const ritz_spin_rate *rate, double t)
 {
     const double h = 1e-4, bound = 2e-7;
@@ -297,7 +297,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(terms_are_sums_over_points),
     cmocka_unit_test(gyroscopic_terms_are_skew_and_softening_symmetric),
     cmocka_unit_test(a_rigid_turn_has_the_inertia),
-    cmocka_unit_test(a_model_keeps_its_terms_alone),
+    cmocka_unit_test(a_spin_model_keeps_only_its_terms),
     cmocka_unit_test(a_body_without_invariants_is_refused),
     cmocka_unit_test(limits_are_those_of_one_dof),
     cmocka_unit_test(a_model_without_terms_has_no_limits),

@@ -22,7 +22,8 @@ static void a_linear_path_has_one_rate(void **state)
     assert_true(range[0] == -30.0 && range[1] == 60.0);
 }
 
-/* Rates by differences over 2 h: (h^2/6) of the next rate and eps/h. */
+/* Rates are central differences over 2 h, whose errors are (h^2/6) times the
+   derivative two orders higher, and eps/h. */
 static void assert_rates(const ritz_path *path, double t, double bound)
 {
     const double h = 1e-4;
@@ -55,8 +56,8 @@ static void a_smooth_path_begins_and_ends_at_rest(void **state)
         assert_rates(&path, 0.3 * k, 1e-5);
 }
 
-/* With rate 0 at both ends and three points 0, 1, 0 of distance 1 the spline is
-   3 s^2 - 2 s^3 on either side: its second rates are 6, -6, 6. */
+/* The spline through 0, 1, 0 at 0, 1, 2 with rate 0 at both ends is 3 s^2 - 2
+   s^3 on either side, so that its second derivatives are 6, -6, 6. */
 static void a_table_is_a_spline_at_rest_at_both_ends(void **state)
 {
     RITZ_OWN(ritz_path) path = {0};
@@ -72,7 +73,7 @@ static void a_table_is_a_spline_at_rest_at_both_ends(void **state)
     ritz_path_at(&path, 1.75, at);
     assert_near(at[0], 3.0 / 16.0 - 2.0 / 64.0, 1e-15);
     for (int k = 1; k < 10; k++)
-        if (k != 5) /* where the third rate jumps */
+        if (k != 5) /* here the third derivative jumps */
             assert_rates(&path, 0.2 * k, 1e-6);
     ritz_path_at(&path, 5.0, at);
     assert_true(at[0] == 0.0 && at[1] == 0.0 && at[2] == 0.0);
@@ -80,8 +81,9 @@ static void a_table_is_a_spline_at_rest_at_both_ends(void **state)
     assert_true(range[0] == 0.0 && range[1] == 1.0);
 }
 
-/* 0, 0, 1 at 0, 1, 2: the spline is below 0 between the first two. There the
-   second rates are m_0 = -1.5, m_1 = 3: s^2 (s - 1) 3/4, least at s = 2/3. */
+/* The spline through 0, 0, 1 at 0, 1, 2 is below 0 between the first two
+   points. Its second derivatives there are -1.5 and 3, so that it is
+   s^2 (s - 1) 3/4, which is least at s = 2/3. */
 static void the_range_of_a_table_is_that_of_its_spline(void **state)
 {
     RITZ_OWN(ritz_path) path = {0};
@@ -97,7 +99,7 @@ static void the_range_of_a_table_is_that_of_its_spline(void **state)
     assert_near(range[1], 1.0, 1e-15);
 }
 
-static void what_is_no_path_is_refused(void **state)
+static void texts_that_are_no_path_are_refused(void **state)
 {
     static const char *const texts[][2] = {
         {"0:60", "'0:60' is not FROM:TO:SECONDS"},
@@ -145,7 +147,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_smooth_path_begins_and_ends_at_rest),
     cmocka_unit_test(a_table_is_a_spline_at_rest_at_both_ends),
     cmocka_unit_test(the_range_of_a_table_is_that_of_its_spline),
-    cmocka_unit_test(what_is_no_path_is_refused),
+    cmocka_unit_test(texts_that_are_no_path_are_refused),
     cmocka_unit_test(no_allocation_failure_leaks),
 };
 

@@ -56,8 +56,8 @@ static double most_diagnosis(const ritz_simulation *s, int which)
     return most;
 }
 
-/* Largest difference of outputs at the times of the coarser run, of the sizes
-   of the finer one. */
+/* Largest difference of outputs at the times of the coarser run, relative to
+   the largest values of the finer one. */
 static double find_difference(const ritz_simulation *coarse,
                               const ritz_simulation *fine)
 {
@@ -78,8 +78,8 @@ static double find_difference(const ritz_simulation *coarse,
     return worst;
 }
 
-/* With multipliers, and so that the step does not matter: an error of the
-   second order is measured below. */
+/* Methods with multipliers, at a step so small that its error is below the
+   bound; the order of that error is measured below. */
 static void outputs_are_those_of_the_eliminated_system(void **state)
 {
     /* SciPy's expm of the eliminated system: at 0.5 s, 2 s */
@@ -117,7 +117,8 @@ static void outputs_are_those_of_the_eliminated_system(void **state)
     }
 }
 
-/* From a step that resolves the springs of a penalty, four times halved. */
+/* The error falls to a quarter each time the step is halved, four times from
+   one that resolves the springs of a penalty. */
 static void assert_order(const joined *j, const char *text,
                          const ritz_integrator *integrator,
                          const ritz_simulation *exact)
@@ -185,8 +186,8 @@ static void penalties_converge_at_second_order(void **state)
             assert_order(&j, names[m], all[i], NULL);
 }
 
-/* [McDaniel2000, figure 4.3]; the violation of a stiff spring is f / k, and
-   bodies joined by stiffer springs differ by as much again. */
+/* [McDaniel2000, figure 4.3]. The violation of a stiff spring is f / k, and f
+   itself depends on the spring by as much. */
 static void ten_times_the_stiffness_gives_a_tenth_of_the_violation(void **state)
 {
     ritz_simulation_request request =
@@ -211,7 +212,7 @@ static void ten_times_the_stiffness_gives_a_tenth_of_the_violation(void **state)
     }
 }
 
-/* The violation of stiff springs at rest under a force, by SciPy. */
+/* Violation of the springs at rest under a constant force; numbers by SciPy. */
 static void a_static_violation_is_that_of_the_springs(void **state)
 {
     ritz_simulation_request request = asking(&ritz_integrator_modal, 0.05);
@@ -221,7 +222,7 @@ static void a_static_violation_is_that_of_the_springs(void **state)
     (void)state;
     assert_ok(joined_new(false, &j));
     assert_ok(ritz_dense_new(5, 5, &j.bodies.D));
-    for (int k = 0; k < 5; k++) /* all motion fades as exp(-t) or faster */
+    for (int k = 0; k < 5; k++) /* all motion decays as exp(-t) or faster */
         ritz_dense_col(&j.bodies.D, k)[k] =
             4.0 * ritz_dense_col(&j.bodies.M, k)[k];
     request.seconds = 40.0;
@@ -229,7 +230,7 @@ static void a_static_violation_is_that_of_the_springs(void **state)
     assert_near(last_diagnosis(&s, VIOLATION), 1.06835523e-04, 1e-12);
 }
 
-/* A start that is off: c_0 = 0.01 of the first row, c'_0 = 0.3. */
+/* A start that violates the first row: c_0 = 0.01, c'_0 = 0.3. */
 static const double off_x[] = {0.0, 0.0, 0.01, 0.0, 0.0};
 static const double off_v[] = {0.0, 0.0, 0.0, -0.3, 0.0};
 
@@ -250,8 +251,8 @@ static void a_violation_without_stabilisation_grows_with_time(void **state)
                     (double)(k + 8) * 0.61 * DBL_EPSILON);
 }
 
-/* c = (c_0 + (c'_0 + beta c_0) t) exp(-beta t) where alpha = beta, of each row
-   as the rows are linear combinations of the constraints. */
+/* c = (c_0 + (c'_0 + beta c_0) t) exp(-beta t) for alpha = beta. It holds for
+   each row, as rows are linear combinations of the constraints. */
 static void baumgarte_ends_a_violation_by_its_closed_form(void **state)
 {
     ritz_simulation_request request =
@@ -274,8 +275,8 @@ static void baumgarte_ends_a_violation_by_its_closed_form(void **state)
     }
 }
 
-/* |S| falls at least by `switch` a second, and then stays within the layer;
-   here S is that of a row, of length s = |row| in M^-1. */
+/* |S| falls by at least `switch` a second, and then stays within the layer.
+   Here S is that of a row, which is `length` = |row| in M^-1 times as large. */
 static void a_sliding_mode_reaches_its_surface_in_time(void **state)
 {
     static const double layers[] = {0.05, 1e-2, 1e-7};
@@ -302,7 +303,7 @@ static void a_sliding_mode_reaches_its_surface_in_time(void **state)
             const double c = s.diagnosis[k * DIAGNOSTICS + VIOLATION];
             const double rate = s.diagnosis[k * DIAGNOSTICS + RATE];
 
-            /* S_0 = 0.34 / 1.29; c' and -surface c agree in sign behind */
+            /* S_0 = 0.34 / 1.29; then c' has the sign of -c */
             if (s.seconds[k] > 0.34 / length / change)
                 assert_true(fabs(rate - surface * c) < bound + 1e-12 ||
                             rate + surface * c < bound + 1e-12);
@@ -334,9 +335,9 @@ static void projection_and_index_2_end_a_violation_in_one_step(void **state)
     }
 }
 
-/* Trapezoidal: energies balance to rounding, those of springs between bodies
-   and of their dampers too. The others: at their own order, so that the tenth
-   of a step is a hundredth. */
+/* With the trapezoidal rule energies balance to rounding, including those of
+   the springs and dampers between bodies. With the other integrators they
+   balance to second order: a tenth of the step gives a hundredth. */
 static void energies_balance_as_those_of_the_integrator(void **state)
 {
     static const char *const names[] = {"none",
@@ -387,7 +388,8 @@ static void index_2_balances_energy_at_its_order(void **state)
     }
 }
 
-/* Twice the first row three times: the rank stays, and multipliers share. */
+/* With three copies of twice the first row the rank stays the same, and the
+   copies share the force. */
 static void redundant_rows_are_named_and_share_forces(void **state)
 {
     const ritz_constrained_request how = holding("projection");
@@ -413,8 +415,8 @@ static void redundant_rows_are_named_and_share_forces(void **state)
                 0.25 * last_diagnosis(&alone, MULTIPLIER), 1e-11);
 }
 
-/* A row that differs from another by 1e-7 is a constraint of its own, and its
-   multiplier is large; the motion is as exact as any. */
+/* A row that differs from another by 1e-7 is a constraint of its own. Its
+   multiplier is large, and the motion is as accurate as with other rows. */
 static void nearly_dependent_rows_do_not_drift(void **state)
 {
     const ritz_simulation_request request =
@@ -432,7 +434,7 @@ static void nearly_dependent_rows_do_not_drift(void **state)
     assert_near(s.y[2000 * 3], 0.0, 2000 * 0.05 * DBL_EPSILON / 1e-7);
 }
 
-static void the_highest_frequency_is_told(void **state)
+static void the_highest_frequency_is_reported(void **state)
 {
     static const struct {
         const char *text;
@@ -464,8 +466,8 @@ static void the_highest_frequency_is_told(void **state)
     }
 }
 
-/* From hz = 1 / (pi step) on. */
-static void springs_beyond_the_step_are_told(void **state)
+/* The step does not resolve springs from hz = 1 / (pi step) on. */
+static void springs_that_a_step_cannot_resolve_are_reported(void **state)
 {
     static const char *const names[] = {"penalty:hz=31.8", "penalty:hz=31.9",
                                         "penalty:hz=31.8,inertia=5",
@@ -487,7 +489,7 @@ static void springs_beyond_the_step_are_told(void **state)
     }
 }
 
-/* Just below and just above the limit that the sentence names. */
+/* Steps just below and just above the limit that the message names. */
 static void a_step_beyond_the_limit_is_refused_or_seen_to_fail(void **state)
 {
     static const char *const names[] = {"baumgarte:alpha=1,beta=201",
@@ -522,7 +524,7 @@ static void a_step_beyond_the_limit_is_refused_or_seen_to_fail(void **state)
                  "the highest frequency, 1.96183 Hz, limits it");
 }
 
-/* By their rules all run at any step at which there is room for them. */
+/* Default parameters give a stable run at every step for which they exist. */
 static void default_parameters_fit_the_step(void **state)
 {
     RITZ_OWN(joined) j = {0};
@@ -543,7 +545,7 @@ static void default_parameters_fit_the_step(void **state)
             }
 }
 
-static void without_room_no_parameter_is_chosen(void **state)
+static void without_a_stable_default_a_run_is_refused(void **state)
 {
     const ritz_simulation_request request =
         asking(&ritz_integrator_central_difference, 0.14);
@@ -620,7 +622,7 @@ static void a_run_that_ended_early_is_continued_bit_for_bit(void **state)
     }
 }
 
-static void words_are_refused_by_name(void **state)
+static void unknown_words_are_refused_by_name(void **state)
 {
     static const struct {
         const char *text, *sentence;
@@ -644,7 +646,7 @@ static void words_are_refused_by_name(void **state)
                 how.gain[2] == 2.0);
 }
 
-static void what_makes_no_sense_is_refused(void **state)
+static void requests_without_sense_are_refused(void **state)
 {
     ritz_simulation_request request = asking(&ritz_integrator_modal, 0.01);
     RITZ_OWN(joined) j = {0};
@@ -746,15 +748,15 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(index_2_balances_energy_at_its_order),
     cmocka_unit_test(redundant_rows_are_named_and_share_forces),
     cmocka_unit_test(nearly_dependent_rows_do_not_drift),
-    cmocka_unit_test(the_highest_frequency_is_told),
-    cmocka_unit_test(springs_beyond_the_step_are_told),
+    cmocka_unit_test(the_highest_frequency_is_reported),
+    cmocka_unit_test(springs_that_a_step_cannot_resolve_are_reported),
     cmocka_unit_test(a_step_beyond_the_limit_is_refused_or_seen_to_fail),
     cmocka_unit_test(default_parameters_fit_the_step),
-    cmocka_unit_test(without_room_no_parameter_is_chosen),
+    cmocka_unit_test(without_a_stable_default_a_run_is_refused),
     cmocka_unit_test(an_impulse_moves_the_joined_bodies),
     cmocka_unit_test(a_run_that_ended_early_is_continued_bit_for_bit),
-    cmocka_unit_test(words_are_refused_by_name),
-    cmocka_unit_test(what_makes_no_sense_is_refused),
+    cmocka_unit_test(unknown_words_are_refused_by_name),
+    cmocka_unit_test(requests_without_sense_are_refused),
     cmocka_unit_test(without_constraints_bodies_move_by_themselves),
     cmocka_unit_test(runs_survive_every_allocation),
 };

@@ -12,7 +12,7 @@
 /* A plant, its controller and how they are joined. */
 typedef struct rig {
     motions row;
-    ritz_state_space plant, controller; /* plant: of a state space */
+    ritz_state_space plant, controller; /* of a plant that is a state space */
     ritz_model subject;
     ritz_loop loop;
     ritz_controlled way;
@@ -72,8 +72,8 @@ static void derivative(double g, bool positive, rig *r)
     ask(1.0, 0.01, r);
 }
 
-/* The acceleration of the last mass through a lag with feedthrough: a loop of
-   feedthroughs, 1/1.5 and 0.5. */
+/* The acceleration of the last mass is fed back through a lag with feedthrough.
+   The feedthroughs 1/1.5 and 0.5 form an algebraic loop. */
 static void feedthrough(rig *r)
 {
     assert_ok(motions_new(true, &r->row));
@@ -93,7 +93,7 @@ static void simulate(const rig *r, ritz_simulation *out)
         ritz_simulate_controlled(r->subject, &r->request, &r->way, NULL, out));
 }
 
-/* y after 0, 10, 50 and 100 steps of a run of 1 s. */
+/* Compare y after 0, 10, 50 and 100 steps of a run of 1 s. */
 static void compare(const rig *r, const double due[4])
 {
     static const int64_t steps[] = {0, 10, 50, 100};
@@ -105,13 +105,13 @@ static void compare(const rig *r, const double due[4])
         largest = fmax(largest, fabs(due[k]));
     for (int k = 0; k < 4; k++) /* of the digits that are written here */
         assert_near(s.y[steps[k] * s.num_outputs], due[k], 1e-12 * largest);
-    if (s.balance) /* rounding: some eps a step of what is exchanged */
+    if (s.balance) /* some eps a step of the energy that is exchanged */
         for (int64_t k = 0; k < s.count; k++)
             assert_near(s.balance[k], 0.0, 1e-13 * (1.0 + s.work[k]));
 }
 
-/* scipy.linalg.expm of the closed loop and its held input */
-static void one_exponential_is_that_of_scipy(void **state)
+/* Numbers by scipy.linalg.expm of the closed loop with its held input. */
+static void one_exponential_agrees_with_scipy(void **state)
 {
     static const double negative[] = {0.0, 5.3298992897937205e-06,
                                       8.4209694762810931e-03,
@@ -135,9 +135,9 @@ static void one_exponential_is_that_of_scipy(void **state)
     compare(&c, direct);
 }
 
-/* The same difference equations in NumPy, those of the first also by
-   scipy.signal.cont2discrete and dlsim. */
-static void a_sampled_controller_is_that_of_scipy(void **state)
+/* Numbers by NumPy from the same difference equations; those of the first case
+   also by scipy.signal.cont2discrete and dlsim. */
+static void a_sampled_controller_agrees_with_scipy(void **state)
 {
     static const struct {
         bool direct;
@@ -268,7 +268,7 @@ static void a_sampled_mass_moves_by_its_difference_equation(void **state)
     }
 }
 
-/* Against the exact propagation: errors halve with the step. */
+/* Errors against the exact propagation are halved with the step. */
 static void a_split_loop_converges_at_first_order(void **state)
 {
     static const double due = 1.9825407660943938e-02; /* SciPy, after 1 s */
@@ -292,8 +292,8 @@ static void a_split_loop_converges_at_first_order(void **state)
         assert_near(error[k] / error[k + 1], 2.0, 0.03 / (double)(1 << k));
 }
 
-/* Other integrators of the plant differ from the exact split by their own
-   second order. */
+/* With other integrators of the plant the split differs from that with `modal`
+   by an error of second order. */
 static void any_integrator_moves_the_plant(void **state)
 {
     static const ritz_integrator *const which[] = {
@@ -328,7 +328,7 @@ static void refuse(rig *r, const char *words)
         RITZ_ERR_ARGUMENT, words);
 }
 
-/* x' = r - 3 x split: x_1 = (1 - 3 h) x_0, unstable from 2/3 s on. */
+/* The split of x' = r - 3 x is x_1 = (1 - 3 h) x_0, unstable from 2/3 s on. */
 static void the_limit_of_an_integrator_is_two_over_its_gain(void **state)
 {
     static const double zero = 0.0, one = 1.0, gain = 3.0;
@@ -359,7 +359,7 @@ static void the_limit_of_an_integrator_is_two_over_its_gain(void **state)
     assert_near(s.y[2] - 1.0 / 3.0, -1.1 * (s.y[1] - 1.0 / 3.0), 1e-14);
 }
 
-/* The three masses: found by bisection in NumPy on the same map. */
+/* The limit for three masses, by bisection in NumPy on the same map. */
 static void the_limit_of_three_masses_is_that_of_their_map(void **state)
 {
     RITZ_OWN(rig) r = {0};
@@ -376,8 +376,8 @@ static void the_limit_of_three_masses_is_that_of_their_map(void **state)
     assert_near(seen.limit, 0.5193733195648383, 1e-4 * 0.52);
 }
 
-/* q'' - 0.02 q' + 1.5 q = 0.5 q, held: the hold is late by h / 2 and damps as
-   0.25 h q'. Radii by NumPy. */
+/* q'' - 0.02 q' + 1.5 q = 0.5 q with the right side held: holding delays it by
+   h / 2, which acts as a damping of 0.25 h q'. Radii by NumPy. */
 static void a_split_that_hides_an_unstable_loop_is_named(void **state)
 {
     static const double m = 1.0, k = 1.5, c = -0.02, gain = 0.5;
@@ -407,9 +407,9 @@ static void a_split_that_hides_an_unstable_loop_is_named(void **state)
     simulate(&r, &s);
 }
 
-/* w = 50 rad/s at a damping of -0.01, w h = 2.5: what generalised-alpha takes
-   of what the step does not resolve is more than the loop gives; the trapezoidal
-   rule takes nothing, and shows it. */
+/* A mode of w = 50 rad/s with a damping of -0.01 at w h = 2.5.
+   Generalised-alpha dissipates more energy than the loop supplies and hides the
+   instability; the trapezoidal rule dissipates nothing and shows it. */
 static void a_dissipative_integrator_that_hides_it_is_named(void **state)
 {
     static const double m = 1.0, k = 2500.0, c = -1.0, gain = 1.0;
@@ -433,8 +433,8 @@ static void a_dissipative_integrator_that_hides_it_is_named(void **state)
     assert_false(seen.hides);
 }
 
-/* 90 masses, 180 states and more: growth of a vector, beside the radius that
-   NumPy finds, 1.0428774. */
+/* 90 masses have more than 180 states, so that the radius is estimated from the
+   growth of a vector. NumPy's radius is 1.0428774. */
 static void a_large_map_is_judged_by_the_growth_of_a_vector(void **state)
 {
     enum { N = 90 };
@@ -470,7 +470,7 @@ static bool stop_once(void *context)
     return (*left)-- == 0;
 }
 
-/* Ended early in the midst of a sample, and continued: the same bits. */
+/* A run is ended between two samples and continued, with the same bits. */
 static void a_loop_continues_bit_for_bit(void **state)
 {
     static const struct {
@@ -509,7 +509,7 @@ static void a_loop_continues_bit_for_bit(void **state)
     }
 }
 
-static void steps_are_cut_to_sample_and_delay(void **state)
+static void steps_divide_sample_and_delay(void **state)
 {
     ritz_controlled way = {.sample = 0.1, .delay = 0.03};
     double step = 0.0;
@@ -531,7 +531,7 @@ static void steps_are_cut_to_sample_and_delay(void **state)
                  "no step of at least 0.001 s divides");
 }
 
-static void what_cannot_be_run_is_refused(void **state)
+static void loops_that_cannot_be_run_are_refused(void **state)
 {
     RITZ_OWN(rig) r = {0};
 
@@ -642,8 +642,8 @@ static void closed_loops_survive_every_failing_allocation(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(one_exponential_is_that_of_scipy),
-    cmocka_unit_test(a_sampled_controller_is_that_of_scipy),
+    cmocka_unit_test(one_exponential_agrees_with_scipy),
+    cmocka_unit_test(a_sampled_controller_agrees_with_scipy),
     cmocka_unit_test(a_discrete_controller_is_taken_as_it_is),
     cmocka_unit_test(a_mass_under_two_gains_moves_as_an_oscillator),
     cmocka_unit_test(a_sampled_mass_moves_by_its_difference_equation),
@@ -655,8 +655,8 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_dissipative_integrator_that_hides_it_is_named),
     cmocka_unit_test(a_large_map_is_judged_by_the_growth_of_a_vector),
     cmocka_unit_test(a_loop_continues_bit_for_bit),
-    cmocka_unit_test(steps_are_cut_to_sample_and_delay),
-    cmocka_unit_test(what_cannot_be_run_is_refused),
+    cmocka_unit_test(steps_divide_sample_and_delay),
+    cmocka_unit_test(loops_that_cannot_be_run_are_refused),
     cmocka_unit_test(a_singular_loop_of_feedthroughs_is_refused),
     cmocka_unit_test(a_loop_too_large_for_one_exponential_is_refused),
     cmocka_unit_test(an_impulse_that_is_measured_is_refused),

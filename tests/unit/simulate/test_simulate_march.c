@@ -1,5 +1,5 @@
-/* The loop over time with marches that are no integrator's, and what an
-   integrator needs to go on. */
+/* The loop over time with marches other than those of integrators, and the
+   numbers from which a march continues. */
 #include "simulate/motion.h"
 #include "testing.h"
 
@@ -26,7 +26,7 @@ static void take_steps(int count, double u, ritz_march *march)
         assert_ok(march->advance(march, &u, &u));
 }
 
-/* The state of a march in another one, by the numbers that ritz_march names. */
+/* Copy the state of a march, which is the numbers that ritz_march names. */
 static void copy_state(const ritz_march *from, ritz_march *to)
 {
     size_t size = (size_t)from->motion->n * sizeof(double);
@@ -79,7 +79,7 @@ static void a_march_continues_from_its_numbers_bit_for_bit(void **state)
     }
 }
 
-/* A point that moves at the rate of its input, and says twice its place. */
+/* A point whose velocity is the input; its output is twice its position. */
 static ritz_status advance_point(ritz_march *march, const double *u0,
                                  const double *u1)
 {
@@ -153,7 +153,7 @@ static void a_march_may_have_its_own_outputs_and_diagnostics(void **state)
     }
 }
 
-/* Whether a number of steps have been taken. */
+/* True after a number of steps. */
 static bool count_down(void *context)
 {
     int *left = context;
@@ -185,7 +185,8 @@ static void same_runs(const ritz_simulation *a, const ritz_simulation *b)
     }
 }
 
-/* Ended after 7, 8 and 93 steps of 100, where every fourth is stored. */
+/* End a run after 7, 8 and 93 of 100 steps, of which every fourth is stored,
+   and continue it. */
 static void end_and_continue(ritz_model subject,
                              ritz_simulation_request request)
 {

@@ -1,6 +1,6 @@
 /*
- * Models in a frame whose rate changes: a point mass on springs, two-dimensional,
- * whose motion at rest is known in closed form; a constant rate, which is one
+ * Models in a frame whose rate changes: a point mass in a plane, whose motion
+ * in the frame at rest is known in closed form; a constant rate, which is one
  * linear model; order, energy, and continuation.
  */
 #include "testing.h"
@@ -87,7 +87,7 @@ static const double *last_of(const ritz_simulation *s)
     return s->y + (s->count - 1) * s->num_outputs;
 }
 
-/* A profile with two corners that are at no step, back to rest. */
+/* A profile whose two corners are within a step. */
 static double corner[] = {0.0, 0.7071, 1.4142}, rates[] = {0.0, 3.0, 1.0};
 static const ritz_spin_rate profile = {RITZ_SPIN_PROFILE, 3, corner, rates};
 static double ramp_time = 1.5, ramp_to = 4.0;
@@ -130,8 +130,8 @@ static void a_free_mass_stays_where_it_is_to_second_order(void **)
     }
 }
 
-/* Balance, which has the work of what holds the rate, relative to the largest
-   energy. */
+/* Largest balance of energies, the work of the drive of the spin included,
+   relative to the largest energy. */
 static double imbalance(double step)
 {
     static const ritz_signal push = {
@@ -166,9 +166,9 @@ static void energy_balances_with_the_work_of_the_spin(void **)
 }
 
 /*
- * The same equations with the input "centrifugal" are one linear model at a
- * constant rate, which the trapezoidal rule of ritz_simulate integrates to
- * rounding alike: some hundred steps, each of some eps.
+ * At a constant rate the equations are those of a linear model with the input
+ * "centrifugal", which ritz_simulate integrates by the trapezoidal rule. Both
+ * agree to rounding, some eps for each of some hundred steps.
  */
 static void a_constant_rate_is_one_linear_model(void **)
 {
@@ -201,7 +201,7 @@ static void a_constant_rate_is_one_linear_model(void **)
         assert_near(spun.y[k], linear.y[k], 1e-12);
 }
 
-static void diagnostics_say_rate_and_angle(void **)
+static void diagnostics_hold_rate_and_angle(void **)
 {
     RITZ_OWN(point) p = {0};
     RITZ_OWN(ritz_simulation) s = {0};
@@ -251,7 +251,7 @@ static void a_run_continues_bit_for_bit(void **)
                         (size_t)(whole.count * 5) * sizeof(double));
 }
 
-static void what_a_spin_does_not_take_is_refused(void **)
+static void requests_that_a_spin_cannot_take_are_refused(void **)
 {
     RITZ_OWN(point) p = {0};
     ritz_simulation s = {0};
@@ -293,9 +293,9 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_free_mass_stays_where_it_is_to_second_order),
     cmocka_unit_test(energy_balances_with_the_work_of_the_spin),
     cmocka_unit_test(a_constant_rate_is_one_linear_model),
-    cmocka_unit_test(diagnostics_say_rate_and_angle),
+    cmocka_unit_test(diagnostics_hold_rate_and_angle),
     cmocka_unit_test(a_run_continues_bit_for_bit),
-    cmocka_unit_test(what_a_spin_does_not_take_is_refused),
+    cmocka_unit_test(requests_that_a_spin_cannot_take_are_refused),
     cmocka_unit_test(every_allocation_may_fail),
 };
 

@@ -15,8 +15,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A mass m on springs k and dashpots c in the plane, forces and outputs x, y,
-   x' [McDaniel2000, 6.2.1]. */
+/* A mass m on springs k and dashpots c that moves in a plane: inputs are forces
+   along x and y, outputs are x, y and x' [McDaniel2000, 6.2.1]. */
 typedef struct plane {
     ritz_dense K, M, D;
     ritz_io io;
@@ -70,7 +70,8 @@ static ritz_status directions(int64_t count, double first, double apart,
     return status;
 }
 
-/* 10 sin(10 pi t) times x and y until t1, and times x and -y from t2 on. */
+/* The force 10 sin(10 pi t) along (x, y) until t1, and along (x, -y) from t2
+   on. */
 typedef struct pushes {
     ritz_signal signal[2];
 } pushes;
@@ -118,7 +119,7 @@ static ritz_simulation_request asking(double seconds, double step,
     return request;
 }
 
-/* A diagnostic at a time that is stored. */
+/* Value of a diagnostic at stored time k. */
 static double told(const ritz_simulation *s, const char *name, int64_t k)
 {
     for (int64_t j = 0; j < s->num_diagnostics; j++)
@@ -137,7 +138,8 @@ static double largest_error(const ritz_simulation *a, const ritz_simulation *b,
     return difference;
 }
 
-/* Simulation D-3 at a density: the first set, and the largest error of x'. */
+/* Run simulation D-3 at density n: the number of the first vector, and the
+   largest error of x'. */
 static double run_density(int n, int64_t *first)
 {
     const double step = 5e-4;
@@ -166,8 +168,8 @@ static double run_density(int n, int64_t *first)
     return largest_error(&full, &s, 2);
 }
 
-/* Linear inputs over 5e-4 s take (10 pi h)^2 / 12 = 2e-5 off a sine; the rest
-   of 3e-4 are the four digits of the numbers. */
+/* Inputs that are linear over h = 5e-4 s differ from a sine by (10 pi h)^2 / 12
+   = 2e-5; the rest of 3e-4 is for numbers of four digits. */
 static void simulation_d3_has_its_published_numbers(void **state)
 {
     static const int64_t firsts[] = {6, 11, 21, 40, 79, 157, 314, 627, 1253};
@@ -262,13 +264,14 @@ static void all_modes_are_the_full_model(void **state)
     request.x0 = x0;
     assert_ok(ritz_simulate(m.dense, &request, &full));
     assert_ok(ritz_simulate_switched(m.dense, &request, &switched, NULL, &s));
-    /* modes below 1e-9 of |R|^2 stand still for an interval */
+    /* modes with less than 1e-9 of |R|^2 do not move for an interval */
     assert_near(largest_error(&full, &s, 0), 0.0, 1e-5);
     for (int64_t k = 0; k < s.count; k++)
         assert_near(s.balance[k], 0.0, 1e-12); /* 500 steps of some J */
 }
 
-/* A set that never changes is the reduced model of its vectors. */
+/* A set that never changes gives the response of the reduced model with its
+   vectors. */
 static void a_set_is_propagated_as_its_reduced_model(void **state)
 {
     RITZ_OWN(motions) m = {0};
@@ -283,7 +286,7 @@ static void a_set_is_propagated_as_its_reduced_model(void **state)
 
     (void)state;
     assert_ok(new_row(false, &m));
-    assert_ok(ritz_dense_new(6, 3, &T)); /* Krylov-like, no modes */
+    assert_ok(ritz_dense_new(6, 3, &T)); /* not modes, as Krylov's */
     for (int64_t i = 0; i < 6; i++) {
         ritz_dense_col(&T, 0)[i] = 1.0 + (double)i;
         ritz_dense_col(&T, 1)[i] = cos((double)i);
@@ -305,8 +308,8 @@ static void a_set_is_propagated_as_its_reduced_model(void **state)
         assert_near(s.balance[k], 0.0, 1e-13);
 }
 
-/* A component, and its matrices as dense ones; accelerations are those of the
-   set. */
+/* A component gives the response of its matrices as a dense model. Outputs that
+   are accelerations are those of the present set. */
 static void a_component_is_switched_as_its_matrices(void **state)
 {
     RITZ_OWN(motions) m = {0};
@@ -331,7 +334,7 @@ static void a_component_is_switched_as_its_matrices(void **state)
     assert_true(told(&dense, "switches", dense.count - 1) > 1.0);
 }
 
-static void projection_loses_what_it_says(void **state)
+static void projection_loses_the_energy_that_it_reports(void **state)
 {
     static const double v0[] = {1.0, -2.0, 0.5, 0.0, 1.0, 0.3};
     RITZ_OWN(motions) m = {0};
@@ -386,8 +389,8 @@ static void random_case_free(random_case *c)
     ritz_dense_free(&c->library);
 }
 
-/* Five masses, D of M alone or of both; directions at random, or modes where D
-   or the jump asks for them. */
+/* Five masses with D = a M or D = a M + b K. The library has random vectors, or
+   modes where D or the jump requires them. */
 static void draw_case(uint64_t *seed, random_case *c)
 {
     double m[5], k[5];
@@ -449,7 +452,7 @@ static void no_checked_library_grows_in_1000_random_cases(void **state)
     assert_true(switches > 5000);
 }
 
-/* An oscillator from (x, v) to where its v, or its x, vanishes. */
+/* Move an oscillator from (x, v) to the next time at which v (or x) is 0. */
 static void to_next_axis(double k, double c, bool of_v, double *x, double *v)
 {
     double low = 0.0, high = 0.01;
@@ -475,14 +478,14 @@ static void to_next_axis(double k, double c, bool of_v, double *x, double *v)
     *v = end[1];
 }
 
-/* Softer while x x' > 0 and stiffer while it is not: each oscillator alone is
-   stable [McDaniel2000, 5.2.15-17]. */
+/* |x'| after half a turn, from x' = 1. k/m is 1/4 while x x' > 0 and 4
+   otherwise; each oscillator alone is stable [McDaniel2000, 5.2.15-17]. */
 static double growth_of_half_turn(double c)
 {
     double x = 0.0, v = 1.0;
 
     to_next_axis(0.25, c, true, &x, &v);
-    v = -1e-300; /* at the largest x it turns round */
+    v = -1e-300; /* here x is largest, and x x' changes its sign */
     to_next_axis(4.0, c, false, &x, &v);
     return fabs(v);
 }
@@ -578,7 +581,8 @@ static void libraries_of_other_models_are_refused(void **state)
     r.library.nrow = 6;
 }
 
-/* Coordinates themselves: D = a M + b K couples them, and so does K. */
+/* The library is the unit matrix: D = a M + b K couples its vectors, and so
+   does K. */
 static void
 libraries_without_a_common_lyapunov_function_are_refused(void **state)
 {
@@ -608,7 +612,7 @@ libraries_without_a_common_lyapunov_function_are_refused(void **state)
     assert_fails(try_run(&r), RITZ_ERR_ARGUMENT, "D has the negative value");
 }
 
-/* With the dwell that is asked for, energies decay from set to set. */
+/* With the dwell time that is required, energy decays from set to set. */
 static void sets_that_dwell_decay(void **state)
 {
     RITZ_OWN(refused) r = {0};
@@ -655,8 +659,9 @@ static void a_state_space_is_refused(void **state)
 
 /* --- the choice ----------------------------------------------------------- */
 
-/* Equal shares go to the lowest number, on whichever side rounding puts them. */
-static void ties_do_not_hang_on_rounding(void **state)
+/* Of equal shares the lowest number is chosen, whatever rounding makes of
+   them. */
+static void ties_do_not_depend_on_rounding(void **state)
 {
     static const double off[] = {-4e-15, 0.0, 4e-15};
     RITZ_OWN(plane) p = {0};
@@ -683,7 +688,7 @@ static void ties_do_not_hang_on_rounding(void **state)
     }
 }
 
-/* The same set again and again, instead of others that are hardly better. */
+/* With hysteresis a set is kept if others are hardly better. */
 static void hysteresis_switches_less(void **state)
 {
     static const double x0[] = {1.0, -1.0, 0.5, 1.0, -0.3, 0.2};
@@ -703,13 +708,13 @@ static void hysteresis_switches_less(void **state)
                                          &report, &s));
         assert_true(report.num_switches < before);
         before = report.num_switches;
-        for (int64_t i = 1; i < s.count; i++) /* it never takes too few */
+        for (int64_t i = 1; i < s.count; i++) /* E is reached all the same */
             assert_true(told(&s, "indicator", i) > 0.9 - 1e-9);
     }
 }
 
-/* A force at rest decides nothing: the set of before is kept. */
-static void no_residual_changes_no_set(void **state)
+/* If state and force are 0, the residual is 0 and the present set is kept. */
+static void a_residual_of_zero_changes_no_set(void **state)
 {
     RITZ_OWN(refused) r = {0};
     RITZ_OWN(ritz_simulation) s = {0};
@@ -732,7 +737,7 @@ static bool count_down(void *context)
     return (*left)-- == 0;
 }
 
-/* Ended at 37 and 61 steps: within an interval and at a switch. */
+/* End the run after 37 and 61 steps, within an interval and at a switch. */
 static void is_continued(refused *r)
 {
     static const int ends[] = {37, 60};
@@ -778,7 +783,7 @@ static void a_switched_run_is_continued_bit_for_bit(void **state)
     r.switched.jump = RITZ_SWITCH_PROJECT;
     is_continued(&r);
     r.switched.jump = RITZ_SWITCH_OFFSET;
-    r.switched.redundant = true; /* sets of vectors that are no modes */
+    r.switched.redundant = true; /* vectors that are not modes */
     for (int k = 0; k < 36; k++) {
         r.m.D.val[k] = 0.3 * r.m.M.val[k];
         r.library.val[k] += 0.3 * cos((double)k);
@@ -812,7 +817,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(all_modes_are_the_full_model),
     cmocka_unit_test(a_set_is_propagated_as_its_reduced_model),
     cmocka_unit_test(a_component_is_switched_as_its_matrices),
-    cmocka_unit_test(projection_loses_what_it_says),
+    cmocka_unit_test(projection_loses_the_energy_that_it_reports),
     cmocka_unit_test(no_checked_library_grows_in_1000_random_cases),
     cmocka_unit_test(two_stable_oscillators_grow_when_switched),
     cmocka_unit_test(requests_without_sense_are_refused),
@@ -820,9 +825,9 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(libraries_without_a_common_lyapunov_function_are_refused),
     cmocka_unit_test(sets_that_dwell_decay),
     cmocka_unit_test(a_state_space_is_refused),
-    cmocka_unit_test(ties_do_not_hang_on_rounding),
+    cmocka_unit_test(ties_do_not_depend_on_rounding),
     cmocka_unit_test(hysteresis_switches_less),
-    cmocka_unit_test(no_residual_changes_no_set),
+    cmocka_unit_test(a_residual_of_zero_changes_no_set),
     cmocka_unit_test(a_switched_run_is_continued_bit_for_bit),
     cmocka_unit_test(a_switched_run_survives_every_allocation),
 };
