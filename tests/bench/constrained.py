@@ -1,12 +1,12 @@
 #!/usr/bin/python3 -s
-"""constrained.py FOLDER-OF-THE-TOOLS [--chart FILE.svg] - ways to hold constraints
-over time, on data/dualspin at clock = 60: the tables and the chart of
-docs/methods/constraints-in-time.md, on standard output.
+"""constrained.py FOLDER-OF-THE-TOOLS [--chart FILE.svg] - methods that hold
+constraints over time, on data/dualspin at clock = 60. Prints the tables of
+docs/methods/constraints-in-time.md, and draws its chart.
 
-Errors are against the eliminated system by exact propagation. Status 1 if an order
-is off (ten times the stiffness, a tenth of the violation; a tenth of the step, a
-hundredth of the error), or a step costs more than four times (hybrid: six) that of
-the eliminated system by the same integrator.
+Errors are against exact propagation of the eliminated system. Status 1 if an
+order is off (ten times the stiffness gives a tenth of the violation, a tenth of
+the step a hundredth of the error), or if a step costs more than four times (of
+hybrid six times) that of the eliminated system by the same integrator.
 """
 import argparse
 import json
@@ -39,7 +39,7 @@ class Bench:
 
     def run(self, name, *words, step=STEP, seconds=SECONDS, every=0,
             start=None):
-        """Outputs, diagnostics (None of an eliminated system), what was said."""
+        """Outputs, diagnostics or None, and the report of a run."""
         drive = ["--initial", "mode:10*0.01", "--start-digits", start] \
             if start else ["--input", "torque_rotor=sine:2"]
         every = every or max(round(STEP / step), 1)
@@ -61,7 +61,7 @@ def error(found, exact):
 
 
 def table_of_methods(bench, exact, least):
-    """Each method with its own parameters; the status."""
+    """Print errors and costs of each method; return True if one is off."""
     print(f"| method | integrator | error at {STEP * 1e3:g} ms | at "
           f"{STEP * 1e2:g} ms | violation | highest, Hz | explicit step below, "
           "ms | a step, us |")
@@ -89,7 +89,7 @@ def table_of_methods(bench, exact, least):
 
 
 def table_of_springs(bench, exact):
-    """Ten times the stiffness, or ten times the inertia; the status."""
+    """Print what stiffness and inertia do; return True if an order is off."""
     print("\n| penalty, hz | inertia | violation | error of the output | "
           "highest, Hz | explicit step below, ms |")
     print("|---|---|---|---|---|---|")
@@ -119,7 +119,7 @@ def eliminated(bench):
 
 
 def drift(bench, chart):
-    """Starts of four digits, over ten seconds."""
+    """Print violations over 4 s after a start rounded to four digits."""
     runs = [("none", "none", 2e-3), ("baumgarte-2", "baumgarte:alpha=2,beta=2",
                                      2e-3),
             ("baumgarte-10", "baumgarte:alpha=10,beta=10", 2e-3),

@@ -1,9 +1,9 @@
 /*
- * loops ORDER... - microseconds of processor for a step of a plant of so many
- * uncoupled modes with a controller of two states: without the controller, split
- * from it, and with it by one exponential, which is a dense product of the
- * order of both, and three more for the integrals of energy. The last column is
- * exact over split. A table, no verdict; OMP_NUM_THREADS=1 for one thread.
+ * loops ORDER... - microseconds of processor time for a step of a plant with so
+ * many uncoupled modes: without a controller, with one of two states by the
+ * split, and with it by one exponential. That is a dense product of the order
+ * of the loop, and three more for the integrals of energy. The last column is
+ * exact over split. It only prints; set OMP_NUM_THREADS=1 for one thread.
  */
 #include "../unit/try.h"
 

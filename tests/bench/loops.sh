@@ -1,8 +1,8 @@
 #!/bin/sh
-# loops.sh FOLDER-OF-THE-TOOLS - a step of a closed loop in time, split and by
-# one exponential, beside one without a controller: the table of
-# docs/methods/closed-loop.md, on one thread. Needs bench_loops, which is built
-# by name beside the tools. A table, no verdict.
+# loops.sh FOLDER-OF-THE-TOOLS - processor time of a step of a closed loop,
+# split and by one exponential, and of a step without a controller, on one
+# thread: the table of docs/methods/closed-loop.md. The target bench_loops must
+# be built by name, in the same build. It only prints, and decides nothing.
 set -eu
 bench=$1/../tests/bench_loops
 if [ ! -x "$bench" ]; then

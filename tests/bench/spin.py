@@ -1,9 +1,9 @@
 #!/usr/bin/python3 -s
-"""spin.py FOLDER-OF-THE-TOOLS - what a step costs while a rate of spin changes,
-which takes a factor of order r^3, and while it does not, of order r^2: data/spin-up
-at several orders, in one run. Prints the table of docs/methods/spin.md.
+"""spin.py FOLDER-OF-THE-TOOLS - the cost of a step while the rate of spin
+changes, with a factorisation of O(r^3), and while it is constant, O(r^2), for
+data/spin-up at several orders r. Prints the table of docs/methods/spin.md.
 
-Status 1 if a step at a constant rate costs more than one at a rate that changes.
+Status 1 if a step costs more at a constant rate than at a rate that changes.
 """
 import pathlib
 import subprocess
@@ -21,7 +21,7 @@ spin: {{axis: [0, 0, 1], profile: [[0, {}], [1, {}]]}}
 
 
 def seconds(tools, folder, model, rates, steps):
-    """Of a run, the least of three."""
+    """Time of a run, the least of three."""
     (folder / "scene.yaml").write_text(SCENE.format(model, *rates))
     best = float("inf")
     for _ in range(3):

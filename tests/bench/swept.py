@@ -1,8 +1,9 @@
-"""swept.py FOLDER-OF-THE-TOOLS - what leaving out the rates of a basis costs.
+"""swept.py FOLDER-OF-THE-TOOLS - the error if the rates of a basis are left
+out: the tables of docs/methods/swept.md.
 
-The two beams of tests/failures/hinge.py, whose hinge turns from 0 to 90 degrees
-in several times while the first bending mode vibrates: each basis against the
-full model, which is integrated with the same step. Printed as Markdown.
+The hinge between the two beams of tests/failures/hinge.py turns from 0 to 90
+degrees in 2, 5 and 20 s, while the first bending mode vibrates. Each basis is
+compared with the full model, which is integrated with the same step.
 """
 import pathlib
 import resource
@@ -18,7 +19,7 @@ BASES = (("switched", ("--sweep-modes", "10")),
 
 
 def sweep(it, seconds, basis, options):
-    """What ritz-simulate says of a basis against the full model."""
+    """What ritz-simulate prints of a basis against the full model."""
     return it.tool("simulate", "scene.yaml", "--sweep",
                    f"twist=0:90:{seconds}s:smooth", "--step", "0.005",
                    "--every", "20", "--initial", "mode:8", "--sweep-basis",
@@ -26,7 +27,7 @@ def sweep(it, seconds, basis, options):
 
 
 def cost(it, basis, options):
-    """Processor time of a step: the same run in 4 000 more of them."""
+    """Modes, and processor time of a step, from 4 000 more steps in a run."""
     spent = []
     for step in ("0.005", "0.0025"):
         before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime

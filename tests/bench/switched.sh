@@ -1,8 +1,9 @@
 #!/bin/sh
-# switched.sh FOLDER-OF-THE-TOOLS - what a step costs of a reduced model that is
-# switched, beside the fixed one of the whole library and the full one, on the
-# beam of data/switching that is loaded across: 400 000 steps, the least of three
-# runs. The table of docs/methods/switched.md. Status 1 if fewer vectors cost more.
+# switched.sh FOLDER-OF-THE-TOOLS - processor time of a step of a switched
+# model, of the fixed model of the whole library and of the full model, for the
+# beam of data/switching with a load across it: 400 000 steps, the least of
+# three runs. Prints the table of docs/methods/switched.md. The status is 1 if a
+# step of the switched model costs more than one of the fixed model.
 set -eu
 bin=$(cd "$1" && pwd)
 data=$(cd "$(dirname "$0")/../../data/switching" && pwd)
@@ -17,7 +18,7 @@ ritz-import -q --stiffness turn.K.mtx --mass beam.M.mtx --dofs beam.dofs \
 ritz-basis -q normal-modes --modes 11 full.h5 -o basis.h5
 ritz-reduce -q full.h5 basis.h5 -o fixed.h5
 
-# run NAME FILE OPTION...: a line for each of three runs
+# run NAME FILE OPTION...: simulate FILE three times and append a line for each
 run() {
     name=$1 file=$2
     shift 2

@@ -16,7 +16,7 @@ json 0 ritz-check column.h5
 holds '  it buckles at a quarter of pi^2' '
     abs([c["value"] for c in j["checks"] if c["name"] == "buckling:tip"][0]
         - 2.4674021) < 5e-8'
-holds '  and not if it is pulled' '
+holds '  but not if it is pulled' '
     [c["value"] for c in j["checks"]
      if c["name"] in ("buckling-reversed:tip", "buckling:spin_zz")] == 2 * [None]'
 expect 0 'K + 2.4674021 KG is singular' ritz-check column.h5
@@ -29,7 +29,7 @@ expect 0 '' ritz-check -q column.h5 --load tip=2.5 --load spin_zz=9
 ritz-basis -q craig-bampton --modes 6 column.h5 -o basis.h5
 expect 0 '' ritz-reduce -q column.h5 basis.h5 -o small.h5
 json 0 ritz-check small.h5
-holds '  a reduced column buckles a little later' '
+holds '  the factor of a reduced column is a little higher' '
     0 <= [c["value"] for c in j["checks"]
           if c["name"] == "buckling:tip"][0] - 2.4674021 < 1e-5'
 expect 1 'buckling-applied' ritz-check small.h5 --load tip=2.5
@@ -47,8 +47,8 @@ holds '  factors of both models are compared' '
 expect 0 "buckling factor of load 'tip': 2.4674 full, 2.46741 reduced" \
     ritz-verify column.h5 small.h5 -o checked.h5
 
-# Where KG is K it stays K: in every method that projects, of one body, of two
-# that are joined, of a second stage and of the system's full model.
+# If KG = K in a component, KG = K in all that is made of it: by every method
+# that projects, in a system of two bodies, its second stage and its full model.
 expect 0 '' ritz-import -q --stiffness K.mtx --mass M.mtx --dofs dofs \
     --bulk column.bdf --geometric-stiffness K.mtx@all --port end=13:126 \
     --input push=13:2 --output-at see=13:2 -o all.h5

@@ -2,8 +2,8 @@
 free, as K.mtx, M.mtx, dofs and column.bdf, and its geometric stiffness: tip.mtx
 of a force that pushes the right end, spin.mtx of spin about z at the left end,
 per square of its rate. E I = rho A = length = 1, E A = 1000.
-column.py alike FILE...: fail unless in each container of models whose geometric
-stiffness was K it still is, summed over all bodies, within 1e-11 of the largest
+column.py alike FILE...: fail unless in each model of the containers the
+geometric stiffness, summed over all bodies, is K within 1e-11 of the largest
 entry.
 """
 import sys
@@ -30,7 +30,7 @@ def inertia(h):
 
 
 def tensioned(h, tension):
-    """Integral of N v' v' over an element; N is a function of the place."""
+    """Integral of N v' v' over an element; N is a function of the position."""
     A = np.zeros((4, 4))
     for x, w in zip(*np.polynomial.legendre.leggauss(6)):
         s = (x + 1) / 2

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Joints of a scene that hold by forces over time instead of elimination.
+# Joints of a scene that are held by forces over time instead of elimination.
 # Usage: constrained.sh FOLDER-OF-THE-TOOLS
 . "$(dirname "$0")/tap.sh"
 . "$here/models.sh"
@@ -29,39 +29,41 @@ sys.exit(not off < float(sys.argv[3]))
 END
 }
 
-# --- the eliminated system, by the same integrator ----------------------------
+# --- against the eliminated system, by the same integrator --------------------
 
 expect 0 '' ritz-simulate $run --step 1e-3 --method trapezoidal -q -o same.h5
 for method in none baumgarte sliding-mode projection; do
     expect 0 '10 rows of rank 10' ritz-simulate $run --step 1e-3 \
         --constraints $method -o $method.h5
-    # rounding of frequencies up to 1e3 times those of the output
-    works '  is the eliminated system' differ $method.h5 same.h5 1e-9
+    # rounding in frequencies that are up to 1e3 times those of the output
+    works '  gives the response of the eliminated system' \
+        differ $method.h5 same.h5 1e-9
 done
 expect 0 '' ritz-simulate $run --step 1e-4 --every 10 -q -o exact.h5
 expect 0 'highest' ritz-simulate $run --step 1e-4 --every 10 \
     --constraints index-2 -o index-2.h5
-works '  of index 2 up to its order' differ index-2.h5 exact.h5 2e-2
+works '  index-2 differs by the error of its order' \
+    differ index-2.h5 exact.h5 2e-2
 expect 0 'hz             800 Hz' ritz-simulate $run --step 1e-4 --every 10 \
     --constraints penalty:hz=800 -o penalty.h5
 expect 0 'violation' ritz-info penalty.h5
 expect 0 '' ritz-export --to tsv penalty.h5 -o penalty.tsv
 expect 0 'violation-rate' head -1 penalty.tsv
 json 0 ritz-simulate $run --step 1e-4 --constraints hybrid:hz=200 -o hybrid.h5
-holds '  the highest frequency is told' '
+holds '  the highest frequency is reported' '
     j["constraints"]["hz"] == 200 and j["constraints"]["redundant"] == [] and
     j["constraints"]["highest_hz"] > j["constraints"]["joined_hz"] > 200'
 
 # --- a start of few digits ----------------------------------------------------
 
-# A bending mode, as a file of two digits has it.
+# A bending mode whose values are rounded to two digits.
 start="scene.yaml --at clock=90,cone=0 --seconds 20 --step 2e-3 --every 100
     --initial mode:10*0.01 --start-digits 2"
 for method in none baumgarte:alpha=5,beta=5 projection; do
     expect 0 '' ritz-simulate $start --constraints $method -q -o drift.h5
     mv drift.h5 "drift-${method%%:*}.h5"
 done
-works '  drifts, fades or is projected' /usr/bin/python3 -s - <<'END'
+works '  the violation stays, decays or is projected' /usr/bin/python3 -s - <<'END'
 import h5py, sys
 def violation(name):
     with h5py.File(f"drift-{name}.h5") as f:
@@ -94,5 +96,5 @@ expect 1 "no stabilisation is called 'glue'" ritz-simulate $run --step 1e-3 \
 expect 1 'is no scene' ritz-simulate rotor.h5 --step 1e-3 --seconds 1 \
     --initial mode:7 --up-to-hz 10 --constraints none -o x.h5
 expect 0 '--constraints, of scenes' ritz-simulate --list
-works '  no file is left of what was refused' test ! -e x.h5
+works '  nothing is written where a run is refused' test ! -e x.h5
 printf '1..%d\n' "$count"

@@ -9,15 +9,15 @@ import_body stator -q --port bearing=1 --port scan=5 --input torque=1:6 \
 ritz-basis -q macneal-rubin --modes 4 stator.h5 -o basis.h5
 ritz-reduce -q stator.h5 basis.h5 -o reduced.h5
 
-# long NAME OPTIONS: a run of about a second, into NAME.h5, as the words of $run
+# long NAME OPTIONS: set $run to the command of a run into NAME.h5, which takes
+# about a second
 long() {
     run="ritz-simulate reduced.h5 --seconds 2500 --step 0.002 --every 50000 \
         --input torque=sine:0.7 --coordinates $2 -o $1.h5"
 }
 
-# same NAME: the file holds what the run that was not ended wrote. The command
-# is one of the file's attributes, hence tables are compared, with 16 digits,
-# and the sums of coordinates.
+# same TITLE FILE: FILE holds the values of whole.h5. Tables with 16 digits are
+# compared, since the command, an attribute of the files, differs.
 same() {
     ritz-export -q --to tsv whole.h5 -o whole.tsv
     ritz-export -q --to tsv "$2" -o "$2.tsv"
@@ -49,13 +49,13 @@ rm -f run.h5
 long run '--checkpoint run.ck'
 expect 1 "the same command continues it from 'run.ck'" at_step INT simulation $run
 expect 1 "is in 'run.h5.interrupted'" at_step INT simulation $run
-works '  two signals, and both files are there' \
+works '  after two signals both files are there' \
     test -s run.ck -a -s run.h5.interrupted -a ! -e run.h5
 expect 0 'time response' $run
-same '  the third run ends as one that was not ended' run.h5
+same '  the third run gives the values of an uninterrupted one' run.h5
 works '  and its checkpoint is gone' test ! -e run.ck
 
-# --- what is no checkpoint of the run -----------------------------------------
+# --- files that are not a checkpoint of the run -------------------------------
 
 expect 1 "the same command continues it" at_step INT simulation $run
 long run "--checkpoint run.ck --rho 0.5"

@@ -55,7 +55,7 @@ works 'a table is interpolated' awk -F '\t' \
 expect 0 '3 times to 0.4 s' ritz-simulate --seconds 0.4 --step 0.05 --every 4 \
     --input torque=impulse reduced.h5 -o few.h5
 
-# The system of a scene, as ritz-assemble would write it.
+# A scene gives the response of the system that ritz-assemble writes.
 printf 'scene: one\ncomponents:\n  body: {model: reduced.h5}\n%s\n%s\n' \
     'inputs: [{name: torque, at: body/bearing, component: 6}]' \
     'outputs: [{name: gyro, at: body/scan, component: 6}]' >scene.yaml
@@ -64,7 +64,7 @@ for file in scene.yaml system.h5; do
     ritz-simulate -q --seconds 1 --step 0.01 --input torque=sine:3 "$file" \
         -o run.h5 && ritz-export -q --to tsv run.h5 -o "$file.tsv"
 done
-works 'a scene moves as its system' cmp scene.yaml.tsv system.h5.tsv
+works 'a scene has the response of its system' cmp scene.yaml.tsv system.h5.tsv
 
 # Springs of 1e9 N/m: static responses are columns of about 1e-9, and their
 # entries of M are 1e-18 where those of modes are 1. Such an M is not singular.
@@ -91,7 +91,7 @@ done
 
 # --- loops -------------------------------------------------------------------
 
-# The gyro fed back to the torque through a lag; a sampled controller late.
+# The rate is fed back to the torque through a lag, also sampled with a delay.
 for what in A=-20 B=1 C=2e4; do
     printf '%%%%MatrixMarket matrix coordinate real general\n1 1 1\n1 1 %s\n' \
         "${what#*=}" >"lag.${what%%=*}.mtx"

@@ -1,6 +1,6 @@
 #!/bin/sh
 # stiffening.sh FOLDER-OF-THE-TOOLS - geometric stiffness in exported files: as
-# terms, as matrices, or a line that it is left out.
+# terms, as matrices, or with a message that it is left out.
 . "$(dirname "$0")/tap.sh"
 . "$here/models.sh"
 
@@ -43,7 +43,7 @@ works 'group 19 holds the terms in the modes of the file' awk '
               largest = x[10, k] > largest ? x[10, k] : largest
               worst = gap * gap > worst ? gap * gap : worst }
           exit !(worst < 1e-18 * largest * largest) }' rotor.mbdyn
-works 'Ct, Cr and Oe of SID stand apart in their first line' sh -c \
+works 'the first line of SID says whether there is stiffening' sh -c \
     'head -n 1 rotor.sid | grep -q "with geometric stiffening" &&
      head -n 1 bare.sid | grep -q "no geometric stiffening"'
 expect 2 'has no terms of geometric stiffness' ritz-export --to fmu \
@@ -56,7 +56,7 @@ expect 0 "KG1  12 x 12, KG of load 'spin_zz'" ritz-export --to output4 \
 expect 0 "KG2  12 x 12, KG of load 'pull'" ritz-export --to matlab \
     --matrix K,KG:pull verified.h5 -o rotor.mat
 expect 0 'KG1' ritz-export --to matrix-market verified.h5 -o m-%.mtx
-# rounding of the source, 2e-9, is taken out of rigid columns of K
+# rigid columns of K are free of the rounding of the source, 2e-9
 works 'KG of K is K' /usr/bin/python3 -s - <<'END'
 import numpy as np
 import scipy.io
@@ -90,7 +90,7 @@ END
 
 # --- nowhere ----------------------------------------------------------------
 
-# leaves TO OPTION...: the export says once that it leaves KG out, by name.
+# leaves TO OPTION...: the export says once which loads it leaves out.
 leaves() {
     to=$1
     shift

@@ -15,14 +15,14 @@ expect 0 'JOINT=FROM:TO:TIME' ritz-simulate --help
 {
     json 0 ritz-simulate --sweep clock=0:60:4s:smooth --sweep-modes 14 \
         --sweep-against full $run -o run.h5
-    holds 'a basis that is switched with the terms is near the full model' \
+    holds 'modes at each setting, with the terms, are near the full model' \
         'j["basis"] == "switched" and j["modes"] == 14
          and j["interpolation"] <= 1e-7 and j["against"] == "full"
          and j["response_error"] < 0.05 and j["energy_error"] < 0.05
          and j["diagnostics"][0]["name"] == "angle"'
     json 0 ritz-simulate --sweep clock=0:60:4s:smooth --sweep-modes 14 \
         --sweep-basis without-terms --sweep-against full $run -o wrong.h5
-    holds '  and without them is not' \
+    holds '  and without the terms they are not' \
         'j["response_error"] > 0.05 or j["energy_error"] > 0.05'
     expect 0 '8 rigid motions: forces of the commanded motion' ritz-simulate \
         --sweep clock=60:0:4s:smooth --sweep-basis one --sweep-against full \
@@ -30,7 +30,7 @@ expect 0 'JOINT=FROM:TO:TIME' ritz-simulate --help
     expect 0 'angle                0 to 60, 60 at the end' ritz-info run.h5
     expect 0 'trapezoidal, step 0.01 s' ritz-info run.h5
 
-    # A file of times and settings; the path is as long as the run.
+    # A file of times and settings; the run ends with the path.
     printf '0 10\n1 20\n2 15\n' >path.tsv
     expect 0 '201 times to 2 s' ritz-simulate --sweep clock=path.tsv \
         --sweep-modes 14 $run -o table.h5

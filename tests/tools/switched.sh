@@ -1,5 +1,5 @@
 #!/bin/sh
-# Switched models as a user asks for them, on the worked example of data/.
+# Switched models by the tools, on the models of data/switching.
 # Usage: switched.sh FOLDER-OF-THE-TOOLS
 . "$(dirname "$0")/tap.sh"
 
@@ -31,7 +31,7 @@ expect 0 'method         switched, step 0.0025 s' ritz-info plane-d4.h5
 json 0 ritz-simulate $turn turn.h5 --damping 'rayleigh 10 0' \
     --switched basis.h5 --switch-interval 0.02 --indicator 0.999999999 \
     --share-of library --look-ahead -o switched.h5
-holds '  fewer vectors a step than the twelve of the library' \
+holds '  the mean number of vectors is below the twelve of the library' \
     'j["vectors"] == 12 and j["mean_vectors"] < 8'
 ritz-simulate -q $turn turn.h5 --damping 'rayleigh 10 0' --up-to-hz 1e6 \
     -o full.h5
@@ -44,11 +44,13 @@ expect 1 "'plane-d4.h5' has other times" ritz-chart switched full.h5 \
 json 0 ritz-simulate $turn turn.h5 --damping 'rayleigh 10 0' \
     --switched modes:6 --switch-interval 0.02 --indicator 0.9 --jump project \
     --share-of library -o project.h5
-holds '  what a projection takes is in the balance' 'j["imbalance"] < 1e-9'
+holds '  the balance has the energy that a projection takes' \
+    'j["imbalance"] < 1e-9'
 expect 0 'energy lost at switches' ritz-info project.h5
 
-# The beam of 6.3: 10 to 15 of 30 modes while the load acts across at Emin 0.9
-# (not where it passes through 0), nearly all at 0.9999.
+# The beam of 6.3 has 30 modes. While the load acts across it, 10 to 15 are
+# taken at Emin 0.9 (fewer where the load passes through 0), nearly all at
+# 0.9999.
 ritz-import -q --stiffness beam.K.mtx --mass beam.M.mtx --dofs beam.dofs \
     --input along=11:1 --input across=11:2 --output-at y=11:2 -o beam.h5
 for least in 0.9 0.9999; do
@@ -58,7 +60,7 @@ for least in 0.9 0.9999; do
         -o beam-$least.h5
     ritz-export -q --to tsv beam-$least.h5 -o beam-$least.tsv
 done
-# vectors FROM TO FILE: the median of what is used in intervals that end there
+# vectors FROM TO FILE: the median number of vectors from FROM to TO seconds
 vectors() {
     awk -F '\t' -v from="$1" -v to="$2" 'NR == 1 {
         for (j = 1; j <= NF; j++)
@@ -71,9 +73,9 @@ vectors() {
 median=$(vectors 0 0.5 beam-0.9.tsv)
 works "10 to 15 modes at Emin 0.9 ($median)" \
     test "$median" -ge 10 -a "$median" -le 15
-works 'all 20 that bend at Emin 0.9999' \
+works 'all 20 bending modes at Emin 0.9999' \
     test "$(vectors 0 0.5 beam-0.9999.tsv)" -eq 20
-works 'and most of 30 once it is stretched' \
+works 'and most of the 30 after a load along the beam' \
     test "$(vectors 1 1.5 beam-0.9999.tsv)" -ge 24
 
 # A reduced component, and a run that is continued from its checkpoint.

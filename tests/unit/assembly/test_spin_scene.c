@@ -115,8 +115,8 @@ static void the_first_mode_has_its_stiffening(void **)
     assert_near(value, 1.1933364, 0.51e-7);
 }
 
-/* D is W G, skew; inputs have the centrifugal load; a ruthless model has neither
-   G nor softening, but the load. */
+/* D is W G, which is skew, and inputs have the centrifugal load. A ruthless
+   model has neither G nor softening, but the load. */
 static void a_system_that_spins_has_gyroscopic_terms_and_a_load(void **)
 {
     RITZ_OWN(ritz_configuration) c = {0}, ruthless = {0};
@@ -279,7 +279,7 @@ static void a_tip_needs_one_joint_outboard(void **)
                  "tip, is not known");
 }
 
-/* ---- what is refused ------------------------------------------------------ */
+/* ---- refusals ----------------------------------------------------------- */
 
 static void refuse_blade(const char *text, const char *sentence)
 {

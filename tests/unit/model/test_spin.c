@@ -183,8 +183,9 @@ static void a_body_without_invariants_is_refused(void **)
 }
 
 /*
- * One dof: K = 9, S = -1, KG = 3 d: stiffness is definite until W^2 = 9 / (1 - 3
- * d); and 3 d W^2 <= ((1 + e)^2 - 1) (9 - W^2).
+ * One dof, K = 9, S = -1, KG = 3 d. Stiffness is definite up to
+ * W^2 = 9 / (1 - 3 d), and stiffening is negligible as long as
+ * 3 d W^2 <= ((1 + e)^2 - 1) (9 - W^2).
  */
 static void limits_are_those_of_one_dof(void **)
 {
@@ -250,8 +251,8 @@ static void rates_are_derivatives_of_angles(void **)
     }
 }
 
-/* A ramp is [KaneRyanBanerjee1987]'s spin-up: (2/5)(t - (7.5/pi) sin(pi t/7.5)),
-   then 6 rad/s. */
+/* A ramp is the spin-up of [KaneRyanBanerjee1987]: (2/5) (t - (7.5/pi)
+   sin(pi t / 7.5)), then 6 rad/s. */
 static void a_ramp_is_the_classical_spin_up(void **)
 {
     double time = 15.0, value = 6.0;

@@ -222,8 +222,8 @@ static void proportional(rig *r)
     ask(2.0, 0.02, r);
 }
 
-/* q'' + 1.5 q' + 4 q = 1/2 from rest: q = (1 - e^(-at) (cos wt + a/w sin wt))/8,
-   a = 3/4, w^2 = 4 - 9/16. */
+/* q'' + 1.5 q' + 4 q = 1/2 from rest: q = (1 - e^(-at) (cos wt + a/w sin wt)) /
+   8, a = 3/4, w^2 = 4 - 9/16. */
 static void a_mass_under_two_gains_moves_as_an_oscillator(void **state)
 {
     const double a = 0.75, w = sqrt(4.0 - 0.5625);
