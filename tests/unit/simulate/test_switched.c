@@ -216,7 +216,7 @@ static void simulation_a_keeps_its_second_basis_until_6_05_s(void **state)
     for (int64_t k = 1; k < s.count; k++)
         assert_true(told(&s, "leading vector", k) ==
                     (s.seconds[k] < 6.075 ? 1.0 : 2.0));
-    assert_near(largest_error(&full, &s, 0), 3.51e-3, 5e-6); /* its digits */
+    assert_near(largest_error(&full, &s, 0), 3.51e-3, 5e-6); /* 3 digits */
     for (int64_t k = 0; s.seconds[k] < 6.025; k++) /* exact to rounding */
         assert_near(s.y[3 * k], full.y[3 * k], 1e-15);
 }
@@ -494,7 +494,7 @@ static void two_stable_oscillators_grow_when_switched(void **state)
 {
     (void)state;
     assert_near(growth_of_half_turn(0.0), 4.0, 1e-10);
-    assert_near(growth_of_half_turn(0.1), 3.315416, 5e-7); /* its digits */
+    assert_near(growth_of_half_turn(0.1), 3.315416, 5e-7); /* 7 digits */
 }
 
 /* --- refusals ------------------------------------------------------------- */
