@@ -1,6 +1,7 @@
-# report.awk RUN ... - what each run took, and how far it is from the full one,
-# of the tables in build/: vectors a step, steps, the first set and the largest
-# errors of each output, absolute and relative to its largest value.
+# report.awk RUN ... - a row for each run whose table is in build/: the mean
+# number of vectors, the number of the first vector, and the largest error of
+# each output against the full model, absolute and relative to the output's
+# largest value.
 function read_table(file,    n, k, parts) {
     n = 0
     while ((getline line <file) > 0) {
