@@ -1,11 +1,12 @@
 /*
- * Bodies that are joined over time: constraints C q = 0 hold by forces or by
- * projections, not by elimination.
+ * Bodies whose joints are held during a simulation: the constraints C q = 0 are
+ * enforced by forces or by projections, and not eliminated beforehand.
  *
  *     M q'' + D q' + K q = B u - C'lambda,    C q = 0
  *
- * A stabilisation says how. The eliminated system (ritz_stage_assemble) is the
- * reference for all of them: its motion has no violation.
+ * A stabilisation is a method that enforces them. The system in which they are
+ * eliminated (ritz_stage_assemble) is the reference for all methods: its motion
+ * satisfies the constraints exactly.
  */
 #ifndef RITZ_CONSTRAINED_H
 #define RITZ_CONSTRAINED_H
@@ -14,14 +15,15 @@
 
 #pragma GCC visibility push(default)
 
-/* Bodies, and what joins them. */
+/* Bodies before they are joined, and the constraints that join them. */
 typedef struct ritz_unjoined {
     int64_t n;          /* coordinates of all bodies */
     int64_t num_rows;   /* constraints, redundant ones too */
     ritz_dense K, M, D; /* n x n, of all bodies; D {0}: none */
     ritz_dense C;       /* num_rows x n, in lengths and radians */
-    double *scale;      /* num_rows: where the rank is decided, a row is
-                              divided by it. NULL: by the longest row */
+    double *scale;      /* num_rows: each row is divided by its scale before
+                              the rank is determined. NULL: all rows by the
+                              length of the longest one */
     char (*row)[RITZ_NAME_SIZE]; /* names; NULL: rows have none */
     ritz_io io;                  /* n */
     ritz_dense P; /* n x e: q = P y, y the joined coordinates; {0}: unknown */
@@ -37,14 +39,16 @@ typedef struct ritz_gain {
     const char *summary;
 } ritz_gain;
 
-/* What the parameters of a stabilisation are chosen from. */
+/* Quantities from which a method chooses parameters that are not given. */
 typedef struct ritz_gain_scales {
-    double base;      /* rad/s: 1 / step, and less where an explicit integrator
-                         has no room for it beside the highest frequency */
+    double base;      /* rad/s: 1 / step, and less where that, added to the
+                         highest frequency of the bodies, would make an
+                         explicit integrator unstable */
     double step;      /* s */
-    double violation; /* |c| and |c'| at the start, c = W q normalised: */
-    double rate;      /* W M^-1 W' = I                                  */
-    double force;     /* |W M^-1 f| that the start and the inputs may ask for */
+    double violation; /* |c| and |c'| at the start, where c = W q with */
+    double rate;      /* W M^-1 W' = I                                 */
+    double force;     /* largest |W M^-1 f| of the initial state and of the
+                         amplitudes of the inputs */
 } ritz_gain_scales;
 
 struct ritz_stabiliser;
@@ -56,12 +60,12 @@ typedef struct ritz_stabilisation {
     const char *accuracy; /* order in the step */
     const char *needs;
     const char *stability; /* for which steps */
-    const char *frequency; /* what it does to the highest one */
+    const char *frequency; /* effect on the highest one */
     const char *fails;
     const char *reference;             /* key in docs/references.bib */
-    ritz_gain gain[RITZ_MOST_GAINS];   /* those behind have no name */
-    const ritz_integrator *integrator; /* where `modal` is asked for; NULL: it
-                                          has an integrator of its own */
+    ritz_gain gain[RITZ_MOST_GAINS];   /* unused ones have no name */
+    const ritz_integrator *integrator; /* used where `modal` is requested;
+                                          NULL: the method is an integrator */
     void (*choose)(const ritz_gain_scales *scales, double *gain);
     ritz_status (*terms)(const double *gain, struct ritz_stabiliser *out);
 } ritz_stabilisation;
@@ -77,55 +81,59 @@ extern const ritz_stabilisation ritz_stabilisation_hybrid;
 extern const ritz_stabilisation ritz_stabilisation_projection;
 extern const ritz_stabilisation ritz_stabilisation_index_2;
 
-/* How constraints are to hold. */
+/* A method to enforce constraints, with its parameters. */
 typedef struct ritz_constrained_request {
     const ritz_stabilisation *method;
-    double gain[RITZ_MOST_GAINS]; /* NaN: by the method's rule */
-    bool any_step; /* also one with which the run is unstable, to see it fail */
+    double gain[RITZ_MOST_GAINS]; /* NaN: the method chooses it */
+    bool any_step; /* accept a step at which the run is unstable */
 } ritz_constrained_request;
 
 /**
  * "METHOD" or "METHOD:NAME=VALUE,...", as "baumgarte:alpha=20,beta=20".
  *
- * @return RITZ_ERR_ARGUMENT naming what is unknown or no number
+ * @return RITZ_ERR_ARGUMENT if a name is unknown or a value is not a number
  */
 ritz_status ritz_constrained_parse(const char *text,
                                    ritz_constrained_request *out);
 
-/* What is known of a run beside its motion. */
+/* Properties of a run, in addition to its motion. */
 typedef struct ritz_constrained_facts {
     int64_t num_rows, rank;
     int64_t num_redundant;
-    int64_t *redundant; /* rows that follow from those before them */
+    int64_t *redundant; /* rows that depend on those before them */
     double gain[RITZ_MOST_GAINS];
     double joined_hz;  /* highest frequency of the joined bodies */
-    double highest_hz; /* the same with what the method adds */
-    double step_limit; /* s, of central differences; HUGE_VAL: none */
-    double step_cost;  /* s of processor time, measured */
-    bool unresolved;   /* springs of a penalty are beyond 2 / step, so that an
-                          implicit integrator lets forces ring */
+    double highest_hz; /* the same with the terms of the method */
+    double step_limit; /* s, of central differences; HUGE_VAL: no limit */
+    double step_cost;  /* processor time of a step, s, as measured */
+    bool unresolved;   /* the frequency of penalty springs is above 2 / step, so
+                          that with an implicit integrator forces oscillate from
+                          step to step */
 } ritz_constrained_facts;
 
 void ritz_constrained_facts_free(ritz_constrained_facts *facts);
 
 /**
- * Simulate. The start is taken as it is given, whether or not constraints hold
- * there; impulses act on the joined bodies. Diagnostics: "violation" and
- * "violation-rate", the largest |C q| and |C q'| of a row, and "multiplier",
- * the largest |lambda| of those with the least sum of squares.
+ * Simulate bodies while a method enforces their constraints. Initial values are
+ * used as they are given, whether or not they satisfy the constraints; impulses
+ * act on the joined bodies. Diagnostics: "violation" and "violation-rate", the
+ * largest |C q| and |C q'| of a row, and "multiplier", the largest |lambda| of
+ * the solution with the least sum of squares.
  *
- * The rank is decided once, by singular values above 1e-9 of the largest of the
- * rows divided by their scales, columns scaled by M.
+ * The rank of the constraints is determined once. It is the number of singular
+ * values above 1e-9 of the largest, of the rows divided by their scales, with
+ * columns scaled by M.
  *
- * @param[in] request  its integrator advances the methods that are differential
- *                     equations, in place of modal the method's own; x0, v0 are
- *                     of the unjoined coordinates
+ * @param[in] request  its integrator advances methods that add terms to the
+ *                     equations of motion; if it is modal, the integrator of
+ *                     the method does. x0 and v0 are in the coordinates of all
+ *                     bodies
  * @param[out] facts   may be NULL
- * @return RITZ_ERR_ARGUMENT if the step is beyond the limit of the integrator
- *         with what the method adds (it is named), if a motion of a body has no
- *         mass, or coordinates are wanted; RITZ_ERR_CONVERGENCE if the motion
- *         leaves all bounds
- * @cost   O(n^3) once; a step two products and a solve of order n
+ * @return RITZ_ERR_ARGUMENT if the step is above the stability limit of the
+ *         integrator, for the bodies and the terms of the method (the sentence
+ *         has the limit), if a motion of a body has no mass, or if coordinates
+ *         are requested; RITZ_ERR_CONVERGENCE if the motion grows without bound
+ * @cost   O(n^3) once; two products and a solve of order n for each step
  */
 ritz_status ritz_simulate_constrained(const ritz_unjoined *bodies,
                                       const ritz_constrained_request *how,

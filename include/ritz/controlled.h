@@ -1,14 +1,17 @@
 /*
  * Closed loops in time. Plant and controller are joined as for frequency
- * responses (ritz_loop), e = some of y and u = r - v, or r + v of positive
- * feedback, and propagated in one of three ways:
+ * responses (ritz_loop): the controller measures outputs e of the plant, and
+ * its output v acts on the inputs u = r - v, or r + v with positive feedback.
+ * The loop is propagated in one of three ways:
  *
- * split    each over a step, exactly or by the plant's integrator, with what
- *          the other one puts out held over it: O(n) a step of a modal plant,
- *          of first order in the step [Sirlin1992]
- * exact    both together, by one exponential of the closed loop
- * sampled  the controller acts at its samples alone, and its output, held from
- *          one to the next, may come late: exact between samples
+ * split    plant and controller separately over each step, the plant exactly or
+ *          by its integrator, each with the output of the other held constant:
+ *          O(n) a step for a modal plant, of first order in the step
+ *          [Sirlin1992]
+ * exact    both together, by one matrix exponential of the closed loop
+ * sampled  the controller measures at its samples only, and its output is held
+ *          from one sample to the next and may be delayed: exact between
+ *          samples
  */
 #ifndef RITZ_CONTROLLED_H
 #define RITZ_CONTROLLED_H
@@ -19,86 +22,93 @@
 
 #pragma GCC visibility push(default)
 
-/* Most states of a closed loop whose poles are computed, and of one that is
-   propagated by its exponential. */
+/* Most states of a closed loop whose poles are computed, and most states of one
+   that is propagated by its exponential. */
 enum { RITZ_LOOP_POLES = 600, RITZ_LOOP_EXACT = 400 };
 
-/* A controller and how it acts. All is borrowed. */
+/* A controller and how it acts. All of it is borrowed. */
 typedef struct ritz_controlled {
     const ritz_state_space *controller;
-    const ritz_loop *loop; /* of it with the model that is simulated */
+    const ritz_loop *loop; /* how it is joined to the simulated model */
     bool exact;            /* one exponential; else split, or sampled */
     bool discrete;         /* its A and B lead from one sample to the next */
     double sample; /* s from one sample to the next; 0: it is continuous */
-    double delay;  /* s, later than measured its outputs act by this */
-    bool any_step; /* a step too that makes the split unstable */
-    bool force;    /* a loop too that is unstable itself */
+    double delay;  /* s from a sample until the output of it acts */
+    bool any_step; /* accept a step at which the split is unstable */
+    bool force;    /* accept a loop that is itself unstable */
 } ritz_controlled;
 
-/* What is known of a loop and of the way it is propagated. */
+/* Stability of a loop, and of the way in which it is propagated. */
 typedef struct ritz_outlook {
-    bool known; /* whether the loop itself, continuous, is stable */
-    ritz_probe loop;
-    double
-        radius; /* spectral, of the map from a step, or a sample, to the next;
-                      of `exact` NaN */
-    bool grows; /* whether it is above 1 by more than its error */
-    bool estimated; /* by the growth of a vector, the map being too large */
-    double limit;   /* s: the least step found at which the split is unstable.
-                       HUGE_VAL: none up to a whole run; 0: it is at every step;
-                       NaN: not looked for, as of `exact` and sampled */
-    bool hides;     /* the loop is unstable, and the way it is propagated is
-                       not: the run would decay */
+    bool known; /* `loop` is set: poles of the continuous loop were computed */
+    ritz_probe loop; /* whether they are stable */
+    double radius;   /* spectral radius of the map from a step, or a sample, to
+                      the next; NaN for `exact` */
+    bool grows;      /* `radius` is above 1 by more than its error */
+    bool estimated;  /* by the growth of a vector, because the map is large */
+    double limit;    /* s: smallest step found at which the split is unstable.
+                       HUGE_VAL: none up to the duration of the run; 0: every
+                       step that was tried is unstable; NaN: not computed, as
+                       for `exact` and sampled loops */
+    bool hides;      /* the loop is unstable, but its propagation is stable: the
+                       run would decay */
 } ritz_outlook;
 
 /**
- * A step of which the sample and the delay are multiples: the longest that is
- * no longer than @p step.
+ * The longest step, of at most @p step, of which the sample and the delay are
+ * whole multiples.
  *
- * @return RITZ_ERR_ARGUMENT if there is none of at least a thousandth of it, or
- *         among the next million of numbers of steps
+ * @return RITZ_ERR_ARGUMENT if no such step is longer than a thousandth of
+ *         @p step, or if a million numbers of steps were tried without success
  */
 ritz_status ritz_controlled_step(const ritz_controlled *controlled, double step,
                                  double *out);
 
 /**
- * Whether a loop is stable, and whether it is as propagated.
+ * Determine whether a loop is stable, and whether its propagation in time is.
  *
- * `limit` is bracketed by steps 1.25 times each other, from that of the request
- * on upwards, or by halves downwards, and then found by bisection: a narrow band
- * of unstable steps may lie below it. The request's own step is always examined.
+ * The search for `limit` starts at the step of the request. Steps grow by a
+ * factor of 1.25 while they are stable, or are halved while they are unstable;
+ * bisection follows. A narrow band of unstable steps below `limit` may be
+ * missed, but the step of the request itself is always examined.
  *
  * @return RITZ_ERR_ARGUMENT if the loop does not fit the model;
  *         RITZ_ERR_SINGULAR if the feedthroughs of both form a singular loop
- * @cost   some 25 N^3 for poles, N states; as much for each of some 60 steps
+ * @cost   about 25 N^3 for the poles of N states, and as much for each of about
+ *         60 steps
  */
 ritz_status ritz_controlled_examine(ritz_model subject,
                                     const ritz_simulation_request *request,
                                     const ritz_controlled *controlled,
                                     ritz_outlook *out);
 
-/** RITZ_ERR_ARGUMENT, and the sentence, if a loop with such an outlook is not
- * simulated unless by `force` or `any_step`. */
+/**
+ * Refuse a loop that is unstable, unless `force` is set, and a step at which
+ * the split is unstable, unless `any_step` is set.
+ *
+ * @return RITZ_ERR_ARGUMENT if the loop or the step is refused
+ */
 ritz_status ritz_controlled_refuse(const ritz_simulation_request *request,
                                    const ritz_controlled *controlled,
                                    const ritz_outlook *outlook);
 
 /**
- * Simulate a closed loop, at rest the controller, before its first sample with
- * outputs of 0.
+ * Simulate a closed loop. The controller starts at rest, and its outputs are 0
+ * before its first sample.
  *
- * The work is that of inputs and controller. Diagnostics are what the
- * controller puts out (as it acts, without the sign of the feedback), the norm
- * of its states, and its part of the work.
+ * The work includes that of the controller. Diagnostics are the outputs of the
+ * controller (at the time at which they act, without the sign of the feedback),
+ * the norm of its states, and its part of the work.
  *
- * @param[in] seen  of ritz_controlled_examine; NULL: it is examined, and
- *                  refused, here
+ * @param[in] seen  of ritz_controlled_examine; NULL: the loop is examined here,
+ *                  and refused as by ritz_controlled_refuse
  * @return RITZ_ERR_ARGUMENT as ritz_simulate and ritz_controlled_refuse, if an
- *         impulse is measured directly, if the
- *         step does not divide sample and delay, or if `exact` is of too many
- *         states
- * @cost   a step of split: that of the integrator, and O((n + m) p + m^2) of m
- *         states of the controller and p of its signals; of exact O((n + m)^2)
+ *         impulse reaches a measured output by feedthrough, if the step does
+ *         not divide sample and delay, or if there are too many states for
+ *         `exact`
+ * @cost   a step of split costs that of the integrator and O((n + m) p + m^2),
+ *         for m states of the controller and p of its signals; a step of exact
+ *         O((n + m)^2)
  */
 ritz_status ritz_simulate_controlled(ritz_model subject,
                                      const ritz_simulation_request *request,
