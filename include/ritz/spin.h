@@ -34,7 +34,7 @@ typedef enum ritz_spin_model {
 /* A rate of rotation over time, rad/s. */
 typedef enum ritz_spin_course {
     RITZ_SPIN_CONSTANT, /* value[0] */
-    RITZ_SPIN_PROFILE,  /* linear between points, constant beside them */
+    RITZ_SPIN_PROFILE,  /* linear between points, constant outside */
     RITZ_SPIN_RAMP,     /* value[0] (s - sin(2 pi s) / (2 pi)), s = t / time[0],
                            then value[0] */
 } ritz_spin_course;
@@ -48,7 +48,7 @@ typedef struct ritz_spin_rate {
 /** Rate at time @p t >= 0. */
 double ritz_spin_rate_at(const ritz_spin_rate *rate, double t);
 
-/** Its derivative; at a corner of a profile that of what follows. */
+/** Derivative of the rate; at a corner of a profile, the slope after it. */
 double ritz_spin_acceleration_at(const ritz_spin_rate *rate, double t);
 
 /** Angle turned since t = 0, rad. */
@@ -56,40 +56,41 @@ double ritz_spin_angle_at(const ritz_spin_rate *rate, double t);
 
 void ritz_spin_rate_free(ritz_spin_rate *rate);
 
-/* Terms of some coordinates at W = 1, W' = 1. */
+/* Spin terms in r coordinates, at W = 1 and W' = 1. */
 typedef struct ritz_spin_terms {
     ritz_dense G, S, KG; /* r x r; KG {0}: none */
     ritz_dense load;     /* r x 2: centrifugal, euler */
     double inertia;      /* about the axis, undeformed */
 } ritz_spin_terms;
 
-/** Leave those that a model keeps: the others become {0}. */
+/** Keep the terms of a spin model; the others become {0}. */
 void ritz_spin_terms_keep(ritz_spin_model model, ritz_spin_terms *terms);
 
-/** sum += those of a body whose coordinates are P x. */
+/** Add the terms of a body whose coordinates are P x to @p sum. */
 ritz_status ritz_spin_terms_add(const ritz_spin_terms *body,
                                 const ritz_dense *P, ritz_spin_terms *sum);
 
 /* Rates that limit a model, rad/s; HUGE_VAL: none does. */
 typedef struct ritz_spin_limits {
-    double stable; /* from here on K + W^2 (S + KG) is not positive definite;
-                      0: it is not at rest */
-    double negligible; /* up to here leaving out KG changes no frequency by more
-                          than the error, relative */
+    double stable;     /* from this rate on K + W^2 (S + KG) is not positive
+                          definite; 0: it is not positive definite at rest */
+    double negligible; /* up to this rate, leaving out KG changes no frequency
+                          by more than the relative error */
 } ritz_spin_limits;
 
 /**
- * Rates that limit a model whose stiffness is definite. With d = (1 + e)^2 - 1
+ * Rates that limit a model whose stiffness is definite. With d = (1 + e)^2 - 1,
  *
  *     d K + W^2 (d S - KG) >= 0
  *
- * makes no frequency of K + W^2 (S + KG) larger than 1 + e times that of K +
- * W^2 S, mode by mode, as the theorem of Courant and Fischer has it; smaller
- * ones likewise. Where K + W^2 S is definite only, so that negligible is never
- * above the rate at which that is not.
+ * implies, by the theorem of Courant and Fischer, that each frequency of K +
+ * W^2 (S + KG) is at most 1 + e times the frequency of the same number of K +
+ * W^2 S. A similar condition bounds frequencies from below. Both need K + W^2 S
+ * to be definite, so that `negligible` is at most the rate at which it is not.
  *
- * @param[in] modes  n x k, in whose space it is looked for: those of the band;
- *                   NULL: all coordinates
+ * @param[in] modes  n x k: modes of the band, in whose space rates are found;
+ *                   NULL: in that of all coordinates
+ * @param[in] error  e
  * @cost  O(n^3)
  */
 ritz_status ritz_spin_limits_of(const ritz_spin_terms *terms,
