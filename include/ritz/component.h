@@ -46,24 +46,25 @@ typedef struct ritz_component {
     ritz_recovery recovery; /* dofs that constraints eliminated */
     int64_t num_quantities;
     ritz_quantity *quantity;
-    ritz_dampers dampers;            /* K and D hold none of them */
+    ritz_dampers dampers;            /* K and D do not include them */
     char damping[RITZ_DAMPING_SIZE]; /* as ritz_damping_parse reads; "" none */
     char units[RITZ_NAME_SIZE];      /* "kg m s" */
-    double asymmetry; /* relative, that was found and averaged away */
-    double digits;    /* significant digits of its files; 0: not known */
+    double asymmetry;                /* relative one that was averaged away */
+    double digits; /* significant digits of its files; 0: not known */
 } ritz_component;
 
 /**
- * Make what was read into a component: all sizes agree, ports lie in it, dofs
- * are distinct, values are finite, and an asymmetry up to 1e-6 of a matrix'
- * largest entry is averaged away (any asymmetry if @p symmetrise). A
- * larger asymmetry of K or M is refused. D keeps it: it is a gyroscopic or
- * circulatory part.
+ * Check and complete a component that was read: sizes must agree, dofs of ports
+ * must be among its dofs, dofs must be distinct, and values finite. An
+ * asymmetry up to 1e-6 of a matrix' largest entry is averaged away (any
+ * asymmetry if
+ * @p symmetrise). A larger asymmetry of K or M is refused; D keeps it, as its
+ * gyroscopic or circulatory part.
  *
- * Missing parts are completed: K with no entries, an empty io.
+ * Missing parts are added: K without entries, an empty io.
  *
- * @param[in,out] component  its asymmetry says what was averaged, 0 if nothing
- * @return RITZ_ERR_FORMAT if it is no component, or is less symmetric
+ * @param[in,out] component  its `asymmetry` is set; 0 if nothing was averaged
+ * @return RITZ_ERR_FORMAT if a check fails, or K or M is less symmetric
  */
 ritz_status ritz_component_settle(ritz_component *component, bool symmetrise);
 

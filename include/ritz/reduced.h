@@ -2,9 +2,9 @@
  * A reduced component: M q'' + D q' + (K + i K4) q = B f, u = T q, small and
  * dense.
  *
- * It carries all that assembly and export need without the full matrices:
- * where its ports are and how they move with q, inputs and outputs, mass
- * properties, and what is known of its errors.
+ * It has all that assembly and export need, without the full matrices: where
+ * its ports are and how they move with q, inputs and outputs, mass properties,
+ * and errors that are known.
  */
 #ifndef RITZ_REDUCED_H
 #define RITZ_REDUCED_H
@@ -17,7 +17,7 @@
 
 #pragma GCC visibility push(default)
 
-/* How a port moves: along basic axes, displacement = map q. */
+/* Motion of a port: its displacements along basic axes are map q. */
 typedef struct ritz_port_map {
     char name[RITZ_NAME_SIZE];
     double origin[3], axes[9];
@@ -27,7 +27,7 @@ typedef struct ritz_port_map {
     ritz_dense map;   /* p x r */
 } ritz_port_map;
 
-/* One named number: an estimate or a measured error, and what it is held to. */
+/* A named number, an estimate or a measured error, and its limit. */
 typedef struct ritz_measure {
     char name[RITZ_NAME_SIZE]; /* "frequency-relative" */
     double value;
@@ -51,7 +51,7 @@ typedef struct ritz_inertia {
 } ritz_inertia;
 
 /*
- * Inertia of the body in a moving frame, as far as M_r does not hold it. R is
+ * Inertia of the body in a moving frame that M_r does not include. R is
  * n x 6, unit rigid motions about the basic origin. A point of mass dm at x
  * moves by v_k in column k of T; x_a and v_ka are components along basic axis
  * a.
@@ -189,8 +189,8 @@ ritz_status ritz_invariants_of(const ritz_component *component,
 ritz_status ritz_invariants_project(const ritz_invariants *invariants,
                                     const ritz_dense *V, ritz_invariants *out);
 
-/** Set the cause of the measure that was added last: why this bound is far
- * above the known error. */
+/** Set the cause of the measure that was added last: why its value is far above
+ * the known error. */
 void ritz_measures_name_cause(ritz_measures *measures, const char *cause);
 
 /** Append a measure; @p where may be NULL. */
@@ -207,16 +207,16 @@ double ritz_measures_value(const ritz_measures *measures, const char *name);
 /** Copy all of @p from; what @p out held is freed. */
 ritz_status ritz_measures_copy(const ritz_measures *from, ritz_measures *out);
 
-/** T'KG T of each load; NULL of none. */
+/** T'KG T of each load; NULL if there is none. */
 ritz_status ritz_loads_reduce(int64_t count, const ritz_load *load,
                               const ritz_dense *T, ritz_reduced_load **out);
 
-/** V'KG V of each load, or with @p V NULL a copy; NULL of none. */
+/** V'KG V of each load, or copies if @p V is NULL; NULL if there is none. */
 ritz_status ritz_loads_project(int64_t count, const ritz_reduced_load *load,
                                const ritz_dense *V, ritz_reduced_load **out);
 
-/** Average away an asymmetry up to 1e-6 of the largest entry, as that of the
- * stiffness of a component is. @return RITZ_ERR_FORMAT if it is larger */
+/** Average away an asymmetry up to 1e-6 of the largest entry, as for the
+ * stiffness of a component. @return RITZ_ERR_FORMAT if it is larger */
 ritz_status ritz_reduced_load_settle(ritz_reduced_load *load);
 
 void ritz_reduced_load_free(ritz_reduced_load *load);
@@ -241,7 +241,7 @@ void ritz_reduced_free(ritz_reduced *reduced);
  * do not hold for fewer.
  *
  * @param[in] smallest  1 .. count: no prefix is shorter
- * @return RITZ_ERR_ARGUMENT if a column is not there, or there twice
+ * @return RITZ_ERR_ARGUMENT if a column does not exist, or is listed twice
  */
 ritz_status ritz_reduced_nest(const ritz_reduced *in, int64_t count,
                               const int64_t *order_of_columns, int64_t smallest,

@@ -42,7 +42,7 @@ typedef struct ritz_state_space {
     char units[RITZ_NAME_SIZE];
 } ritz_state_space;
 
-/** Zero matrices (E the identity), names and limits taken from @p io. */
+/** Zero matrices (E the identity), with the names and limits of @p io. */
 ritz_status ritz_state_space_new(int64_t states, const ritz_io *io,
                                  ritz_state_space *out);
 
@@ -72,7 +72,7 @@ ritz_status ritz_state_space_dense(const ritz_state_space *model,
  * Whether all parts fit each other, values are finite and E, if there is one,
  * is not singular.
  *
- * @return RITZ_ERR_FORMAT with what does not
+ * @return RITZ_ERR_FORMAT if they do not; the sentence names the part
  */
 ritz_status ritz_state_space_check(const ritz_state_space *model);
 
@@ -86,7 +86,7 @@ ritz_status ritz_state_space_check(const ritz_state_space *model);
  * @return RITZ_ERR_ARGUMENT if there are more than RITZ_STATE_DOFS dofs, if
  *         there is structural damping, which is of harmonic motion alone, or if
  *         a massless dof is damped, or driven and observed by its velocity;
- *         RITZ_ERR_SINGULAR if K + M is
+ *         RITZ_ERR_SINGULAR if K + M is singular
  * @cost   O(n^3), n dofs
  */
 ritz_status ritz_state_space_of_component(const ritz_component *component,
@@ -102,13 +102,14 @@ ritz_status ritz_state_space_of_component(const ritz_component *component,
  * respond statically and are eliminated, and a bound of the error is noted as
  * estimate "h-infinity-bound".
  *
- * Of more than RITZ_STATE_DOFS dofs nothing dense is made; damping ratios then
- * need basis->among_hz, and dofs without mass must be without input.
+ * With more than RITZ_STATE_DOFS dofs no dense matrix of the component is
+ * formed. Damping ratios then need basis->among_hz, and dofs without mass must
+ * have no input.
  *
  * @param[in] basis  of states, W {0}: T itself
  * @return RITZ_ERR_ARGUMENT if it is no such basis, or sizes disagree, or as
- *         above; RITZ_ERR_SINGULAR if W'E T is, or the columns that are to be
- *         eliminated have no static response
+ *         above; RITZ_ERR_SINGULAR if W'E T is singular, or the columns that
+ *         are to be eliminated have no static response
  */
 ritz_status ritz_reduce_states(const ritz_component *component,
                                const ritz_damping *damping,
@@ -135,7 +136,7 @@ ritz_status ritz_reduce_space(const ritz_state_space *full,
  * Rigid columns, which must be M-orthogonal to all others, have no part in K_r.
  *
  * @return RITZ_ERR_ARGUMENT if the basis is of states, or has no W, or as
- *         ritz_reduce_states; RITZ_ERR_SINGULAR if M_r is
+ *         ritz_reduce_states; RITZ_ERR_SINGULAR if M_r is singular
  */
 ritz_status ritz_reduce_companion(const ritz_component *component,
                                   const ritz_damping *damping,

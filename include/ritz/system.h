@@ -39,7 +39,7 @@ typedef struct ritz_configuration {
     ritz_dense places;    /* num_blocks x 12: rotation R, row by row, and
                              translation t of each body, whose points x are at R
                              x + t; {0}: not known */
-    ritz_measures errors; /* by ritz-verify or ritz-compare */
+    ritz_measures errors; /* of ritz-verify or ritz-compare */
 } ritz_configuration;
 
 /* A component of a system: rows first .. first + order - 1 of q are its own. */
@@ -60,16 +60,17 @@ typedef struct ritz_system {
     double band_hz[2];
     char damping[RITZ_DAMPING_SIZE]; /* as ritz_damping_parse reads */
     char units[RITZ_NAME_SIZE];
-    char spin[4 * RITZ_NAME_SIZE]; /* that K, D and inputs have in them: model,
+    char spin[4 * RITZ_NAME_SIZE]; /* included in K, D and inputs: model,
                                       rad/s, axis; "": none */
 } ritz_system;
 
 /**
- * The configuration that @p at names: "clock=60,slide=0.5", settings compared
- * within 1e-9; joints that are not named must have one setting only.
- * NULL @p at: the only configuration.
+ * The configuration that @p at names, such as "clock=60,slide=0.5". Settings
+ * are compared within 1e-9, and joints that are not named must have one setting
+ * only. NULL @p at: the only configuration.
  *
- * @return RITZ_ERR_ARGUMENT listing what there is
+ * @return RITZ_ERR_ARGUMENT if there is none; the sentence lists those that
+ * exist
  */
 ritz_status ritz_system_find(const ritz_system *system, const char *at,
                              const ritz_configuration **out);
@@ -79,8 +80,8 @@ void ritz_configuration_name(int64_t count, const char *sweep, size_t stride,
                              const double *setting, char out[RITZ_NAME_SIZE]);
 
 /**
- * Add the dampers, as they are now, to K and D: see ritz_dampers_install.
- * lambda does not change.
+ * Add the dampers, at their present values, to K and D: see
+ * ritz_dampers_install. lambda does not change.
  */
 ritz_status ritz_configuration_install(ritz_configuration *configuration);
 
