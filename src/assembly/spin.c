@@ -1,18 +1,21 @@
 /*
- * A scene that spins. Body k stands at x = R x_k + t, so that an axis n through
- * c is R'n through R'(c - t) in its own frame. At a rate W its matrices become
+ * A scene that spins. A point x_k of body k is at x = R x_k + t in the scene.
+ * In the frame of the body, an axis n through c therefore has the direction R'n
+ * and goes through R'(c - t). At a rate W the matrices of the body become
  *
  *     K + W^2 (S + KG),   D + W G,
  *     KG = sum_{a <= b} n_a n_b KG_ab + tau KG_tip
  *
- * with KG_ab the geometric stiffness for w_a w_b in its basic frame, and tau the
- * tension, at W = 1, by what is joined outboard of it:
+ * where KG_ab is the geometric stiffness for the product w_a w_b of rates about
+ * its basic axes, and tau is the tension that bodies outboard of it cause at
+ * W = 1:
  *
  *     tau = e . sum_j m_j d_j
  *
- * over the bodies that no joint leads to but through this one, m_j their masses,
- * d_j their centres from the axis, e the direction from the axis to the port
- * that holds them. What pulls to the side of e is left out.
+ * The sum is over the bodies that joints connect to the first body only through
+ * this one. m_j is the mass of such a body, d_j the vector from the axis to its
+ * centre of mass, and e the direction from the axis to the port that holds
+ * them. Components of their force perpendicular to e are left out.
  */
 #include "assembly/assembly.h"
 
@@ -45,8 +48,8 @@ static void take_place(const ritz_dense *places, int64_t k, double R[9],
         *(j < 9 ? &R[j] : &t[j - 9]) = ritz_dense_col(places, j)[k];
 }
 
-/* The axis in the frame of body k: direction, and the foot of its basic origin
-   upon it. */
+/* The axis in the frame of body k: its direction, and its point nearest to the
+   basic origin. */
 static void find_axis(const ritz_scene_spin *spin, const ritz_dense *places,
                       int64_t k, double n[3], double foot[3])
 {
@@ -62,7 +65,7 @@ static void find_axis(const ritz_scene_spin *spin, const ritz_dense *places,
         foot[a] -= along * n[a];
 }
 
-/* A point of body k from the axis, in the frame of the scene. */
+/* Vector from the axis to a point of body k, in the frame of the scene. */
 static void find_arm(const ritz_scene_spin *spin, const ritz_dense *places,
                      int64_t k, const double *point, double arm[3])
 {
@@ -77,7 +80,7 @@ static void find_arm(const ritz_scene_spin *spin, const ritz_dense *places,
         arm[a] -= along * spin->axis[a];
 }
 
-/* Bodies that are reached from @p start through joints, but not through k. */
+/* Bodies that joints connect to @p start without passing through body k. */
 static void reach_bodies(const ritz_scene *scene, int64_t start, int64_t k,
                          bool *reached)
 {
@@ -97,8 +100,8 @@ static void reach_bodies(const ritz_scene *scene, int64_t start, int64_t k,
     }
 }
 
-/* The only joint of body k that leads outboard, and the side of k; a body
-   beyond it is not `inboard`. */
+/* The only joint between body k and a body that is not `inboard`, and the side
+   of the joint on which body k is. */
 static ritz_status find_outlet(const ritz_scene *scene, int64_t k,
                                const bool *inboard, const ritz_joint **joint,
                                int *side)
@@ -122,7 +125,7 @@ static ritz_status find_outlet(const ritz_scene *scene, int64_t k,
     return RITZ_OK;
 }
 
-/* Sum of m_j d_j of the bodies that are reached only through the joint. */
+/* Sum of m_j d_j of the bodies outboard of the joint. */
 static ritz_status pull_of(const ritz_stage *stage, const ritz_dense *places,
                            int64_t start, int64_t k, double pull[3])
 {
@@ -164,7 +167,7 @@ static ritz_status find_tension(const ritz_stage *stage,
     RITZ_CHECK(
         pull_of(stage, places, joint->between[1 - side].component, k, pull));
     port = ritz_reduced_port(&stage->body[k], joint->between[side].port);
-    if (!port) /* as assembly has said */
+    if (!port) /* assembly refuses such a joint */
         return RITZ_ERR_ARGUMENT;
     find_arm(&scene->spin, places, k, port->origin, arm);
     length = sqrt(ritz_dot(arm, arm));
@@ -175,7 +178,7 @@ static ritz_status find_tension(const ritz_stage *stage,
     return RITZ_OK;
 }
 
-/* n_a n_b of one stiffening. */
+/* Factor n_a n_b of a geometric stiffness. */
 static double weight_of(int which, const double n[3])
 {
     static const int pair[][2] = {
@@ -186,7 +189,8 @@ static double weight_of(int which, const double n[3])
     return n[pair[which][0]] * n[pair[which][1]];
 }
 
-/* Loads of spin are of a body that turns about its basic origin. */
+/* Geometric stiffness is that of a body which turns about its basic origin:
+   refuse an axis that misses the origin. */
 static ritz_status check_origin(const ritz_reduced *body, const double foot[3])
 {
     const double away = sqrt(ritz_dot(foot, foot));
@@ -295,7 +299,8 @@ ritz_status ritz_stage_spin(const ritz_stage *stage,
     return RITZ_OK;
 }
 
-/* The first product of rates that stiffens a body and has no load. */
+/* The first product of rates that is not 0 and for which the body names no
+   geometric stiffness. */
 static int find_lack(const ritz_scene_component *item, const double n[3])
 {
     for (int s = 0; s < RITZ_STIFFENING_TIP; s++)
@@ -315,7 +320,7 @@ int ritz_stage_spin_lacks(const ritz_stage *stage, const ritz_configuration *at,
     return find_lack(&stage->scene->component[k], n);
 }
 
-/* ---- a stage at a rate -------------------------------------------------- */
+/* ---- a stage at a constant rate ----------------------------------------- */
 
 void ritz_spun_free(ritz_spun *spun)
 {
@@ -328,7 +333,7 @@ void ritz_spun_free(ritz_spun *spun)
     *spun = (ritz_spun){0};
 }
 
-/* Matrices of one body at a rate W; all else of it stays borrowed. */
+/* A body whose K and D are those at a rate W; its other parts are borrowed. */
 static ritz_status spin_body(const ritz_reduced *at_rest,
                              const ritz_spin_terms *terms, double W,
                              ritz_reduced *body)

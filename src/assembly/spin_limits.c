@@ -8,7 +8,8 @@
 
 #include <math.h>
 
-/* Columns of I for the flexible modes up to the band's end, or for all. */
+/* Unit vectors of the flexible modes up to the end of the band; of all flexible
+   modes if there is no band, or no mode in it. */
 static ritz_status band_modes(const ritz_scene *scene,
                               const ritz_configuration *c, ritz_dense *out)
 {
@@ -30,7 +31,7 @@ ritz_status ritz_stage_spin_limits(const ritz_stage *stage,
                                    const double *setting, double error,
                                    ritz_spin_limits *out)
 {
-    ritz_scene rest = *stage->scene, all = *stage->scene; /* both borrowed */
+    ritz_scene rest = *stage->scene, all = *stage->scene; /* borrowed */
     ritz_stage at_rest = *stage, consistent = *stage;
     ritz_spin_limits limits = {0}, band = {0};
     RITZ_OWN(ritz_configuration) c = {0};

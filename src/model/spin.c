@@ -1,18 +1,18 @@
 /*
- * Terms of a frame that turns, from the inertia invariants. With P_(aj)(bk) =
- * int v_ja v_kb, position X_a(bk) = int x_a v_kb, S_bk = int v_kb, n the axis
- * and c a point of it,
+ * Spin terms of a body from its inertia invariants. With P_(aj)(bk) =
+ * int v_ja v_kb, X_a(bk) = int x_a v_kb, S_bk = int v_kb, n the axis and c a
+ * point of it,
  *
  *     int v_j . (n x v_k)           = sum_ab N_ab P_(aj)(bk),     N = n~
  *     int v_j . (n x (n x v_k))     = sum_ab Q_ab P_(aj)(bk),     Q = n n' - I
  *     int v_j . (n x (n x (x - c))) = sum_ab Q_ab (X_a(bj) - c_a S_bj)
  *
- * The turning itself is the rigid motion p = [-n x c; n], so that
+ * The rotation itself is the rigid motion p = [-n x c; n], so that
  *
  *     int v_j . (n x (x - c)) = p'R'MT,     inertia = p'R'MR p
  *
- * hold with all of M. The tests hold all of them to point masses, to beams of
- * full order and to the closed forms of a rod.
+ * follow from all of M. The tests compare all terms with point masses, with
+ * beams of full order and with the closed forms of a rod.
  */
 #include "model/spin.h"
 
@@ -115,7 +115,7 @@ void ritz_spin_terms_keep(ritz_spin_model model, ritz_spin_terms *terms)
     }
 }
 
-/* sum += P'A P; {0} is a sum of none. */
+/* sum += P'A P; an empty sum or A is zero. */
 static ritz_status add_congruence(const ritz_dense *A, bool symmetric,
                                   const ritz_dense *P, ritz_dense *sum)
 {

@@ -6,10 +6,10 @@
 #include <ritz/spin.h>
 
 /**
- * Terms of the columns of a reduced component, KG left {0}.
+ * Spin terms of the columns of a reduced component; KG stays {0}.
  *
  * @param[in] axis     n, unit, along basic axes
- * @param[in] through  a point of the axis, from the basic origin
+ * @param[in] through  a point of the axis, in the basic frame
  * @return RITZ_ERR_ARGUMENT if the component has no invariants
  * @cost   O(r^2)
  */

@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-/* Point of a profile at or before t; -1: t is before all of them. */
+/* Number of the last point of a profile at or before t; -1 if there is none. */
 static int64_t find_point(const ritz_spin_rate *rate, double t)
 {
     int64_t k = -1;
@@ -34,7 +34,7 @@ static double profile_at(const ritz_spin_rate *rate, double t)
     return rate->value[k] + slope_after(rate, k) * (t - rate->time[k]);
 }
 
-/* Trapezoids between the points, from t = 0 on. */
+/* Integral of a profile from 0 to t, by trapezoids between its points. */
 static double turned_by_profile(const ritz_spin_rate *rate, double t)
 {
     double from = 0.0, sum = 0.0;

@@ -1,4 +1,5 @@
-/* How a scene turns, and which loads stiffen its components as it does. */
+/* Keys of a scene that spins: its axis and rate, and the loads that stiffen its
+   components. */
 #include "scene/yaml.h"
 
 #include "base/alloc.h"
@@ -133,7 +134,7 @@ static ritz_status take_rate(const ritz_yaml *yaml, const yaml_node_t *node,
     return RITZ_OK;
 }
 
-/* In a plane bodies turn about its normal alone. */
+/* Bodies of a plane scene can only turn about the normal of the plane. */
 static ritz_status check_plane(const ritz_yaml *yaml, const yaml_node_t *node,
                                const ritz_scene *scene)
 {
