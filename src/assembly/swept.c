@@ -1,14 +1,14 @@
 /*
- * A basis over the setting of a joint. At equally spaced x the lowest r modes of
- * the system V_i = P Phi, of all bodies along their own axes, are aligned with
- * those before,
+ * A basis as a function of the setting of a joint. At equally spaced x_i, V_i =
+ * P Phi are the lowest r modes of the system, in the coordinates of all bodies
+ * along their own axes. Each V_i is aligned with the basis at the knot before,
  *
  *     T_i+1 = V_i+1 O,   O = U W' of V_i+1'M T_i = U s W'
  *
  * which is Procrustes' rotation [Schoenemann1966]: it chooses signs, turns
- * modes within clusters and exchanges those that cross. T_i+1'M T_i is then
- * symmetric. If the smallest s is small, the space of r modes is not continuous,
- * since mode r changes places with mode r + 1.
+ * modes within clusters and exchanges modes that cross. T_i+1'M T_i is then
+ * symmetric. If the smallest s is small, the space of r modes is not
+ * continuous, because mode r changes places with mode r + 1.
  */
 #include "simulate/swept.h"
 
@@ -22,8 +22,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Intervals at first, those from which a basis that turns too much between
-   knots is refused, and the most. */
+/* Numbers of intervals: at first; from which on a basis that changes too much
+   between knots is refused; and at most. */
 enum { FEWEST = 8, ENOUGH = 128, MOST = 1024 };
 
 /* The system at one setting. */
@@ -67,7 +67,7 @@ static const char *sweep_name(const sweeper *w)
     return w->stage->scene->sweep[w->asked->sweep].name;
 }
 
-/* V, S V and what else is needed of a configuration. */
+/* Fill a knot with V, S V, eigenvalues and placements of a configuration. */
 static ritz_status fill_knot(const sweeper *w, double x, const double *setting,
                              ritz_configuration *c, sweep_knot *out)
 {
@@ -86,7 +86,7 @@ static ritz_status fill_knot(const sweeper *w, double x, const double *setting,
     return RITZ_OK;
 }
 
-/* Systems at some x. */
+/* Assemble the system at each x. */
 static ritz_status make_knots(const sweeper *w, int64_t count, const double *x,
                               sweep_knot *out)
 {
@@ -118,7 +118,7 @@ static ritz_status make_knots(const sweeper *w, int64_t count, const double *x,
     return RITZ_OK;
 }
 
-/* The first grid. */
+/* The first grid, of FEWEST intervals. */
 static ritz_status begin_grid(const sweeper *w, sweep_grid *out)
 {
     double x[FEWEST + 1];
@@ -130,7 +130,7 @@ static ritz_status begin_grid(const sweeper *w, sweep_grid *out)
     return make_knots(w, out->count, x, out->knot);
 }
 
-/* Half way between the knots of a grid. */
+/* Knots half way between those of a grid. */
 static ritz_status make_middles(const sweeper *w, const sweep_grid *grid,
                                 sweep_grid *out)
 {
@@ -144,7 +144,7 @@ static ritz_status make_middles(const sweeper *w, const sweep_grid *grid,
     return make_knots(w, out->count, x, out->knot);
 }
 
-/* Both grids as one, in @p grid; the other is left empty. */
+/* Merge both grids into @p grid; the other one is left empty. */
 static ritz_status merge_grids(sweep_grid *grid, sweep_grid *middles)
 {
     RITZ_OWN(sweep_grid) all = {0};
@@ -170,7 +170,7 @@ static int64_t count_modes(const sweep_knot *k, double up_to_hz)
     return count;
 }
 
-/* One knot at x. */
+/* A grid of one knot, at x. */
 static ritz_status make_one(const sweeper *w, double x, sweep_grid *out)
 {
     out->count = 1;
@@ -178,8 +178,8 @@ static ritz_status make_one(const sweeper *w, double x, sweep_grid *out)
     return make_knots(w, 1, &x, out->knot);
 }
 
-/* The setting between knots i and i + 1 at which the number of modes in the band
-   changes, to a thousandth of the range. */
+/* The setting between knots i and i + 1 at which the number of modes in the
+   band changes, to a thousandth of the range. */
 static ritz_status find_change(const sweeper *w, const sweep_grid *grid,
                                int64_t i, double *setting)
 {
@@ -201,7 +201,7 @@ static ritz_status find_change(const sweeper *w, const sweep_grid *grid,
     return RITZ_OK;
 }
 
-/* Refuse a band that a mode leaves, or enters, on the way from the start. */
+/* Refuse a band if a mode leaves or enters it between the start and a knot. */
 static ritz_status check_band(const sweeper *w, const sweep_grid *grid)
 {
     const ritz_sweep_request *asked = w->asked;
@@ -231,7 +231,8 @@ static ritz_status check_band(const sweeper *w, const sweep_grid *grid)
     return RITZ_OK;
 }
 
-/* Systems of one kind: the same constraints and rigid motions everywhere. */
+/* Refuse a grid on which the rank of the constraints changes, or on which a
+   mode leaves or enters the band. */
 static ritz_status check_ranks(const sweeper *w, const sweep_grid *grid)
 {
     const sweep_knot *first = &grid->knot[0];
@@ -280,7 +281,7 @@ static ritz_status find_rotation(const ritz_dense *A, double *least,
     return ritz_dense_mul_nt(&U, &W, O);
 }
 
-/* O'diag(d) O of what ratios give each mode of a knot. */
+/* O'diag(d) O, d the damping that ratios give to each mode of a knot. */
 static ritz_status turn_ratios(const sweeper *w, const sweep_knot *k,
                                const ritz_dense *O, ritz_dense *out)
 {
@@ -335,13 +336,14 @@ static ritz_status correlate(const ritz_dense *V, const ritz_dense *M,
     return ritz_dense_mul_tn(V, &MT, out);
 }
 
-/* The least overlap of two bases beside each other, and where it is. */
+/* Smallest overlap of the bases of two neighbouring knots, and which they
+   are. */
 typedef struct sweep_gap {
     double overlap;
     int64_t at;
 } sweep_gap;
 
-/* F of all knots, aligned one after the other. */
+/* F of all knots, each aligned with the knot before. */
 static ritz_status align_knots(const sweeper *w, const sweep_grid *grid,
                                ritz_swept_model *m, sweep_gap *gap)
 {
@@ -386,7 +388,8 @@ static double longest_column(const ritz_dense *X, const ritz_dense *AX)
     return sqrt(fmax(most, 0.0));
 }
 
-/* What the spline is off at a knot that it does not know. */
+/* Error of the spline at a knot that it does not interpolate; @p out becomes
+   the larger of both. */
 static ritz_status measure_middle(const sweeper *w, const ritz_swept_model *m,
                                   const sweep_knot *k, double *out)
 {
@@ -415,7 +418,8 @@ static ritz_status measure_middle(const sweeper *w, const ritz_swept_model *m,
     return RITZ_OK;
 }
 
-/* Modes r and r + 1 change places where two bases overlap least. */
+/* Refuse a basis whose mode r changes places with mode r + 1: this happens
+   where two neighbouring bases overlap least. */
 static ritz_status refuse_gap(const sweeper *w, const sweep_grid *grid,
                               int64_t r, const sweep_gap *gap)
 {
@@ -430,7 +434,7 @@ static ritz_status refuse_gap(const sweeper *w, const sweep_grid *grid,
         sqrt(fmax(k->lambda[r - 1], 0.0)) / (2.0 * RITZ_PI));
 }
 
-/* Knots until the spline between them is accurate. */
+/* Add knots until the spline between them is accurate. */
 static ritz_status refine(const sweeper *w, sweep_grid *grid,
                           ritz_swept_model *m)
 {
@@ -456,8 +460,9 @@ static ritz_status refine(const sweeper *w, sweep_grid *grid,
     }
 }
 
-/* The axis about which a body turns with x, in its own frame: of R_0'R_1 =
-   exp(d n x) the skew part is sin d n x. */
+/* The axis n about which a body turns with x, in its own frame. With N u = n x
+   u and d the angle between two knots, R_0'R_1 = exp(d N) has the skew part
+   sin(d) N. */
 static void find_axis(const sweep_knot *a, const sweep_knot *b, int64_t body,
                       double n[3])
 {
@@ -479,7 +484,7 @@ static void find_axis(const sweep_knot *a, const sweep_knot *b, int64_t body,
     }
 }
 
-/* Blocks of G and H of a body that turns about n. */
+/* Add to G and H the blocks of a body that turns about n. */
 static void add_turning(const ritz_invariants *own, const double n[3],
                         int64_t first, ritz_dense *G, ritz_dense *H)
 {
@@ -506,7 +511,7 @@ static void add_turning(const ritz_invariants *own, const double n[3],
         }
 }
 
-/* G and H, if bodies turn. */
+/* G and H, if any body turns. */
 static ritz_status find_turning(const sweeper *w, const sweep_grid *grid,
                                 ritz_swept_model *m)
 {
@@ -586,8 +591,8 @@ static ritz_status list_springs(const sweeper *w, ritz_swept_model *m)
     return RITZ_OK;
 }
 
-/* V_c T_c of the bodies c of the stage that theirs were cut from, and P' M of
-   that stage times it. */
+/* start = sum_c P_c'M_c V_c T_c over the bodies of the stage `origin`, in whose
+   modes x0 is; P_c and M_c are of that stage. */
 static ritz_status start_from(const sweeper *w, const ritz_dense *T,
                               ritz_swept_model *m)
 {
@@ -609,7 +614,7 @@ static ritz_status start_from(const sweeper *w, const ritz_dense *T,
     return RITZ_OK;
 }
 
-/* q of x0 at the start, and frequencies there. */
+/* The matrix that gives q for x0 at the start, and the frequencies there. */
 static ritz_status find_start(const sweeper *w, ritz_swept_model *m)
 {
     const double x = m->unit * w->asked->setting[w->asked->sweep];

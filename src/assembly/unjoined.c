@@ -1,15 +1,14 @@
 /*
- * The bodies of a stage as they are before they are joined: K, M and D side by
- * side, with the springs and dampers of joints, and the rows C q = 0 of what
- * joints lock, in lengths and radians.
+ * The bodies of a stage before they are joined: K, M and D with a block for
+ * each body, to which the springs and dampers of joints are added, and a row of
+ * C q = 0 for each motion that a joint locks, in lengths and radians.
  *
- * Stated damping is of the joined system's modes. With P M-orthonormal, its
- * matrix D_e there is
+ * Damping that is stated for the model is that of the modes of the joined
+ * system, where its matrix is D_e. With P M-orthonormal, the bodies have
  *
  *     D = M P D_e P'M,    P'D P = D_e,
  *
- * on the bodies: it damps the joined motion as it damps the system, and a
- * violation not at all.
+ * which damps the joined motion like the system, and does not damp violations.
  */
 #include "assembly/assembly.h"
 
@@ -21,7 +20,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Blocks of the bodies, the matrix at an offset in each; {0} if none has it. */
+/* Block-diagonal matrix of the bodies' matrices at an offset of ritz_reduced;
+   {0} if no body has one. */
 static ritz_status gather(const ritz_stage *stage, size_t offset,
                           ritz_dense *out)
 {
@@ -48,7 +48,8 @@ static ritz_status refuse_structural(const ritz_stage *stage)
     return RITZ_OK;
 }
 
-/* "clock translation 2": the rows of a joint are counted by kind. */
+/* Name rows as "clock translation 2": joint, kind and number within the
+   kind. */
 static void name_rows(const ritz_relations *of, ritz_unjoined *u)
 {
     int64_t count[2] = {0};
@@ -64,7 +65,7 @@ static void name_rows(const ritz_relations *of, ritz_unjoined *u)
     }
 }
 
-/* Length of a row, columns scaled to unit mass. */
+/* Length of a row whose columns are scaled to unit mass. */
 static double measure_row(const ritz_stage *stage, const ritz_dense *C,
                           int64_t i)
 {
@@ -78,7 +79,8 @@ static double measure_row(const ritz_stage *stage, const ritz_dense *C,
     return sqrt(sum);
 }
 
-/* The longest row of its joint and kind, as ritz_stage_constraints has it. */
+/* The scale of a row is the length of the longest row of the same joint and
+   kind, as in ritz_stage_constraints. */
 static void scale_rows(const ritz_stage *stage, const ritz_relations *of,
                        ritz_unjoined *u)
 {
@@ -107,7 +109,7 @@ static ritz_status fill_constraints(const ritz_stage *stage,
     return RITZ_OK;
 }
 
-/* Coordinates of the bodies by those of the system, one under another. */
+/* P: the blocks of all bodies, one below the other. */
 static ritz_status stack_blocks(const ritz_stage *stage,
                                 const ritz_configuration *joined, ritz_dense *P)
 {
