@@ -1,12 +1,13 @@
-/* The signals of a loop in states, for the rooms above. */
+/* Signals of a closed loop as functions of its states. */
 #ifndef RITZ_RESPONSE_LOOP_H
 #define RITZ_RESPONSE_LOOP_H
 
 #include <ritz/response.h>
 
 /**
- * What the controller measures, as rows over [x; w; r], its feedthrough and the
- * plant's solved for:
+ * What the controller measures, as rows over [x; w; r]: states of the plant,
+ * states of the controller, and inputs. The feedthroughs of both are
+ * eliminated:
  *
  *     e = Q (C_y x + s D_yu C_c w + D_y r),   Q = (I - s D_yu D_c)^-1
  *
@@ -17,7 +18,7 @@ ritz_status ritz_loop_measured(const ritz_dense *C, const ritz_dense *D,
                                const ritz_state_space *controller,
                                const ritz_loop *loop, ritz_dense *e);
 
-/** What it puts out over the same, v = C_c w + D_c e. */
+/** Outputs of the controller over [x; w; r], v = C_c w + D_c e. */
 ritz_status ritz_loop_output(const ritz_dense *C, const ritz_dense *D,
                              const ritz_state_space *controller,
                              const ritz_loop *loop, ritz_dense *v);

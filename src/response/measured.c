@@ -1,7 +1,7 @@
 /*
- * A response that was measured, as something that responds: between its points
- * it is interpolated as every response is (ritz_response_at), beyond them it is
- * not known. It has no states and no poles.
+ * A measured response as a responder. Between its points it is interpolated
+ * like any response (ritz_response_at); outside their range it is not known. It
+ * has no states and no poles.
  */
 #include "base/alloc.h"
 #include "response/responder.h"
@@ -12,7 +12,7 @@
 
 typedef struct measured {
     const ritz_response *response; /* borrowed */
-    ritz_poles poles;              /* none, with the names */
+    ritz_poles poles; /* no poles, but names of inputs and outputs */
 } measured;
 
 static ritz_status measured_at(void *state, double hertz, double _Complex *H)
