@@ -1,15 +1,16 @@
 /*
- * Runs of joined bodies: a march whose state is that of all bodies, z and z',
- * and which an integrator of the house advances with what a stabilisation adds,
- * or that of index 2.
+ * Runs of joined bodies: a march whose state is that of all bodies, z and z'. A
+ * ritz_integrator advances it with the terms of a stabilisation, or the
+ * integrator of index 2 does.
  *
- * Energies are of the bodies, and of the springs and masses of a penalty:
+ * Energies are those of the bodies, and of the springs and masses of a penalty:
  *
  *     kinetic = |z'|^2 / 2 + inertia |c'|^2 / 2
  *     potential = z'Lambda z / 2 + stiffness |c|^2 / 2
  *
- * The balance is what the integrator and the forces along violated constraints
- * add: multipliers do no work where c' = 0.
+ * The balance of energies differs from zero by what the integrator adds, and by
+ * the work of forces along violated constraints: multipliers do no work where
+ * c' = 0.
  */
 #include "simulate/constrained.h"
 
@@ -29,17 +30,17 @@ static const char *const diagnostics[DIAGNOSTICS] = {
     [MULTIPLIER] = "multiplier",
 };
 
-/* Of a march of joined bodies; freed in release_run. */
+/* What a march of joined bodies owns; release_run frees it. */
 typedef struct run_state {
     const ritz_linked *joined; /* borrowed */
     ritz_stabiliser terms;
-    ritz_motion motion;        /* for an integrator of the house */
-    ritz_march inner;          /* of that */
+    ritz_motion motion;        /* bodies with the terms of a stabilisation */
+    ritz_march inner;          /* of this motion */
     ritz_index2 index2;        /* if terms.implicit */
     ritz_law_step law;         /* if terms.law */
     double *before, *force;    /* n */
     double *c, *rate, *mu, *g; /* rank */
-    double *u0, *u1;           /* inputs, behind them g */
+    double *u0, *u1;           /* inputs, followed by g */
     double *saved;             /* the inner state at the start of a step */
 } run_state;
 
@@ -55,7 +56,7 @@ static void release_run(void *own)
               s->saved, s);
 }
 
-/* The inner state to x and v, or from them. */
+/* Copy x and v into the inner march, or back from it. */
 static void exchange_state(bool in, ritz_march *march)
 {
     run_state *s = march->own;
@@ -65,7 +66,7 @@ static void exchange_state(bool in, ritz_march *march)
     memcpy(in ? s->inner.v : march->v, in ? march->v : s->inner.v, size);
 }
 
-/* The inner state to `saved`, or back. */
+/* Copy the inner state to `saved`, or back from it. */
 static void save_state(bool back, run_state *s)
 {
     ritz_march *m = &s->inner;
@@ -88,7 +89,7 @@ static void find_gaps(run_state *s, const double *x, const double *v)
     ritz_linked_gap(s->joined, v, s->rate);
 }
 
-/* g of the present c and c'. */
+/* g for the present c and c'. */
 static void find_law(run_state *s, double *g)
 {
     for (int64_t k = 0; k < s->joined->rank; k++) {
@@ -99,7 +100,8 @@ static void find_law(run_state *s, double *g)
     }
 }
 
-/* A step with g: once without g at its end, which tells what it is there. */
+/* A step with g. It is first taken with g = 0 at its end, from which g there
+   follows, and then repeated. */
 static ritz_status advance_law(run_state *s)
 {
     const int64_t rank = s->joined->rank;
@@ -129,7 +131,8 @@ static void project_state(ritz_march *march)
     ritz_linked_push(s->joined, -1.0, s->rate, march->v);
 }
 
-/* h v'A v of A the damper of a penalty, v = (c_1 - c_0) / h. */
+/* Energy h v'A v that the damper A of a penalty dissipates, v = (c_1 - c_0) /
+   h, and that a law dissipates. */
 static double dissipate_gaps(const run_state *s, double step)
 {
     const double *g0 = s->u0 + s->joined->motion.B.ncol;
@@ -144,7 +147,7 @@ static double dissipate_gaps(const run_state *s, double step)
     return sum;
 }
 
-/* As of the integrators of the house: work by the change of z over the step. */
+/* Work is that of mean forces over the change of z, as in other integrators. */
 static void account_energy(ritz_march *march, const double *u0,
                            const double *u1)
 {
@@ -206,7 +209,7 @@ static ritz_status settle_run(ritz_march *march, const double *u)
     return s->inner.settle(&s->inner, s->u0);
 }
 
-/* mu = W z'' of free bodies - W z''. */
+/* mu = W z_f'' - W z'', z_f'' being the acceleration of free bodies. */
 static void find_multipliers(const ritz_march *march, const double *u)
 {
     const ritz_motion *m = march->motion;
@@ -232,7 +235,7 @@ static void find_multipliers(const ritz_march *march, const double *u)
     }
 }
 
-/* Accelerations are those of free bodies, less what the multipliers take. */
+/* Accelerations are those of free bodies and those that multipliers cause. */
 static void find_outputs(const ritz_march *march, const double *u, double *y)
 {
     const ritz_motion *m = march->motion;
@@ -267,7 +270,7 @@ static void find_energy(const ritz_march *march, double *kinetic,
     }
 }
 
-/* Largest |A x| of a row. */
+/* Largest |A x| over the rows of A. */
 static double find_largest(const ritz_dense *A, const double *x)
 {
     double most = 0.0;
@@ -282,7 +285,7 @@ static double find_largest(const ritz_dense *A, const double *x)
     return most;
 }
 
-/* Behind find_outputs, which found the multipliers. */
+/* It is called after find_outputs, which computes the multipliers. */
 static void diagnose_run(const ritz_march *march, double *out)
 {
     const run_state *s = march->own;
@@ -292,7 +295,7 @@ static void diagnose_run(const ritz_march *march, double *out)
     out[MULTIPLIER] = find_largest(&s->joined->L, s->mu);
 }
 
-/* What a unit g at the end of a step adds to c and c' there. */
+/* Changes of c and c' at the end of a step by a unit g there. */
 static ritz_status find_influence(run_state *s)
 {
     const int64_t inputs = s->joined->motion.B.ncol;

@@ -3,9 +3,10 @@
  *
  *     z'' + D z' + Lambda z = B u - W'mu,    c = W z = 0,    W W' = I
  *
- * W has orthonormal rows, as many as the rank of the constraints, and spans
- * what the rows of C Phi span. With M = I its inner product is that of M. What
- * a stabilisation adds acts on c alone.
+ * W has orthonormal rows, as many as the rank of the constraints, and spans the
+ * rows of C Phi. As M = I in these coordinates, W W' = I is orthonormality in
+ * the inner product of the mass. The terms of a stabilisation depend on c and
+ * c' alone.
  */
 #ifndef RITZ_SIMULATE_CONSTRAINED_H
 #define RITZ_SIMULATE_CONSTRAINED_H
@@ -15,16 +16,16 @@
 #include <ritz/constrained.h>
 
 typedef struct ritz_linked {
-    ritz_motion motion; /* modal, of the unjoined bodies; an impulse acts on
-                           the joined ones */
+    ritz_motion motion; /* in modes of the unjoined bodies; an impulse acts
+                           on the joined ones */
     int64_t num_rows, rank;
     ritz_dense W;     /* rank x n */
     ritz_dense G;     /* num_rows x n, C Phi */
-    ritz_dense L;     /* num_rows x rank: lambda = L mu, of least length */
+    ritz_dense L;     /* num_rows x rank: lambda = L mu has least length */
     ritz_dense reach; /* outputs x rank: what -mu adds to outputs that are
                           accelerations */
-    double highest;   /* eigenvalue of the joined bodies */
-    double unjoined;  /* the same of the unjoined ones */
+    double highest;   /* highest eigenvalue of the joined bodies */
+    double unjoined;  /* highest eigenvalue of the unjoined bodies */
     int64_t num_redundant;
     int64_t *redundant;
 } ritz_linked;
@@ -39,33 +40,36 @@ void ritz_linked_push(const ritz_linked *joined, double alpha, const double *mu,
                       double *y);
 
 /*
- * What a stabilisation does to c:
+ * A stabilisation in the equation of c. With multipliers
  *
- *     c'' = [c'' of free bodies] - stiffness c - damping c' + g(c, c'),
+ *     c'' = - stiffness c - damping c' + g(c, c'),
  *
- * the first term left out where it works with multipliers, and the whole
- * divided by 1 + inertia where it does not.
+ * and without them, c_f'' being that of bodies on which it does not act,
+ *
+ *     (1 + inertia) c'' = c_f'' - stiffness c - damping c' + g(c, c').
  */
 typedef struct ritz_stabiliser {
     bool multipliers; /* forces along the constraints are cancelled */
-    bool projects;    /* z and z' at the end of each step */
-    bool implicit;    /* index 2: no terms, an integrator of its own */
+    bool projects;    /* z and z' are projected at the end of each step */
+    bool implicit;    /* index 2: an integrator of its own, without terms */
     double stiffness, damping, inertia;
-    double stiffest; /* with multipliers: of c, with the steepest part of g */
-    double own[3];   /* of the law */
+    double stiffest; /* with multipliers: largest stiffness of c, with that of
+                        the steepest part of g */
+    double own[3];   /* parameters of the law */
     /** g of one constraint, and its derivatives by c and c'; NULL: 0. */
     void (*law)(const struct ritz_stabiliser *s, double c, double rate,
                 double out[3]);
 } ritz_stabiliser;
 
 /**
- * Makes a motion of what integrators of the house act on, dense, with g as
- * further inputs behind those of the bodies if there is a law.
+ * The dense motion of bodies and stabilisation, to which any ritz_integrator
+ * can be applied. If there is a law, the values g are further inputs after
+ * those of the bodies.
  */
 ritz_status ritz_stabilised_motion(const ritz_linked *joined,
                                    const ritz_stabiliser *s, ritz_motion *out);
 
-/** Highest eigenvalue of that motion. */
+/** Highest eigenvalue of the motion that ritz_stabilised_motion gives. */
 ritz_status ritz_stabilised_highest(const ritz_linked *joined,
                                     const ritz_stabiliser *s, double *out);
 
@@ -78,15 +82,15 @@ typedef struct ritz_index2 {
     ritz_general_factor WSW; /* rank */
     ritz_dense SW;           /* n x rank, S^-1 W' */
     int64_t num_memory;
-    double *memory;          /* a, z'' and inputs at the end of the last step */
+    double *memory;          /* a, r and inputs at the end of the last step */
     double *a, *rate, *last; /* in memory */
-    double *x, *v, *r;       /* n, to work in */
+    double *x, *v, *r;       /* n, work space */
     double *eta, *mu;        /* rank */
 } ritz_index2;
 
 ritz_status ritz_index2_new(const ritz_linked *joined, double step, double rho,
                             ritz_index2 *out);
-/** The acceleration at the start. */
+/** Compute the acceleration at the start. */
 void ritz_index2_settle(ritz_index2 *s, const double *x, const double *v,
                         const double *u);
 void ritz_index2_step(ritz_index2 *s, const double *u0, const double *u1,
@@ -97,22 +101,22 @@ void ritz_index2_free(ritz_index2 *s);
 typedef struct ritz_law_step {
     int64_t rank;
     ritz_dense X, V;  /* rank x rank: what a unit g at the end adds to c, c' */
-    ritz_dense J;     /* rank x rank, to work in */
+    ritz_dense J;     /* rank x rank, work space */
     double *c, *rate; /* rank: without g at the end */
     double *trial, *residual, *change; /* rank */
 } ritz_law_step;
 
 ritz_status ritz_law_step_new(int64_t rank, ritz_law_step *out);
 /**
- * Solves g = law(c + X g, c' + V g) by Newton's method.
+ * Solve g = law(c + X g, c' + V g) by Newton's method.
  *
- * @return RITZ_ERR_CONVERGENCE
+ * @return RITZ_ERR_CONVERGENCE if it does not converge
  */
 ritz_status ritz_law_step_solve(const ritz_stabiliser *s, ritz_law_step *l,
                                 double *g);
 void ritz_law_step_free(ritz_law_step *l);
 
-/** A march of joined bodies, which both must outlive. */
+/** A march of joined bodies, during which @p joined and @p terms must exist. */
 ritz_status ritz_constrained_march(const ritz_linked *joined,
                                    const ritz_stabiliser *terms,
                                    const ritz_simulation_request *request,

@@ -1,11 +1,12 @@
 /*
- * Constrained runs: parameters by their rules, the limit of the step, and what
- * is known beside the motion.
+ * Constrained runs: the choice of parameters, the limit of the step, and the
+ * properties of a run.
  *
- * Parameters are chosen from base = 1 / step: half of what an explicit
- * integrator resolves, and as fast as an implicit one follows. With an explicit
- * one, base^2 + highest^2 <= (0.9 2 / step)^2, highest that of the bodies, so
- * that both fit.
+ * Parameters are chosen from base = 1 / step. This is half of the highest
+ * frequency at which an explicit integrator is stable, and about the highest
+ * that an implicit one follows. With an explicit integrator base is reduced
+ * until base^2 + highest^2 <= (0.9 2 / step)^2, where highest is that of the
+ * bodies.
  */
 #include "simulate/constrained.h"
 
@@ -74,8 +75,8 @@ ritz_status ritz_constrained_parse(const char *text,
     return RITZ_OK;
 }
 
-/* Forces and violations at the start, in modes; f = |W z''| that the start and
-   the amplitudes of the inputs ask for. */
+/* Violations at the start, and the largest |W z''| of free bodies, from their
+   initial state and the amplitudes of the inputs. */
 static ritz_status measure_start(const ritz_linked *j,
                                  const ritz_simulation_request *request,
                                  ritz_gain_scales *scales)
@@ -109,7 +110,8 @@ static ritz_status measure_start(const ritz_linked *j,
     return RITZ_OK;
 }
 
-/* Parameters that are not given, and what the method makes of all. */
+/* Choose the parameters that are not given, and find the terms of the
+   method. */
 static ritz_status find_terms(const ritz_linked *j,
                               const ritz_constrained_request *how,
                               const ritz_simulation_request *request,
@@ -139,12 +141,12 @@ static ritz_status find_terms(const ritz_linked *j,
         gain[k] = isnan(how->gain[k]) ? chosen[k] : how->gain[k];
     }
     if (how->method == &ritz_stabilisation_sliding_mode &&
-        isnan(how->gain[2])) /* the layer follows the switching part */
+        isnan(how->gain[2])) /* the layer depends on `switch` */
         gain[2] = gain[1] * request->step;
     return ritz_context(how->method->terms(gain, terms), how->method->name);
 }
 
-/* An explicit integrator has no step beyond 2 / omega. */
+/* An explicit integrator is unstable at steps above 2 / omega. */
 static ritz_status check_step(const ritz_constrained_request *how,
                               const ritz_simulation_request *request,
                               const ritz_constrained_facts *facts)
@@ -190,7 +192,7 @@ static ritz_status find_facts(const ritz_linked *j,
     return RITZ_OK;
 }
 
-/* A step at rest. */
+/* Processor time of a step, measured at rest. */
 static ritz_status find_cost(const ritz_linked *j, const ritz_stabiliser *terms,
                              const ritz_simulation_request *request,
                              double *out)
@@ -203,7 +205,8 @@ static ritz_status find_cost(const ritz_linked *j, const ritz_stabiliser *terms,
     return ritz_march_cost(&march, u, out);
 }
 
-/* The request with the integrator that is meant, under the name of both. */
+/* A copy of the request with the integrator that is used, whose name is that of
+   the method and the integrator. */
 static void name_run(const ritz_constrained_request *how,
                      const ritz_simulation_request *request,
                      ritz_integrator *integrator, char name[RITZ_NAME_SIZE])
@@ -219,8 +222,8 @@ static void name_run(const ritz_constrained_request *how,
     integrator->name = name;
 }
 
-/* Coordinates up to which one thread does a run: a step takes microseconds,
-   and threads would wait for each. */
+/* Largest number of coordinates for which a run takes one thread: a step takes
+   microseconds, and threads would wait for each other in each step. */
 enum { SMALL_RUN = 360 };
 
 static ritz_status label_run(const ritz_unjoined *bodies, ritz_simulation *s)

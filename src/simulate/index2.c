@@ -1,27 +1,27 @@
 /*
  * Generalised-alpha for constraints at the levels of position and velocity, the
- * multipliers eta and mu of Gear, Gupta and Leimkuhler [GearLeimkuhlerGupta1985]
- * in the scheme of [ArnoldBruls2007], with the weights of [ChungHulbert1993]:
+ * multipliers eta and mu of Gear, Gupta and Leimkuhler
+ * [GearLeimkuhlerGupta1985] in the scheme of [ArnoldBruls2007], with the
+ * weights of [ChungHulbert1993]:
  *
- *     x_1 = x* + h^2 beta a_1 - W'eta,    x* = x_0 + h v_0 + h^2 (1/2 - beta) a_0
- *     v_1 = v* + h gamma a_1,             v* = v_0 + h (1 - gamma) a_0
- *     (1 - alpha_m) a_1 + alpha_m a_0 = (1 - alpha_f) r_1 + alpha_f r_0
- *     r_1 = B u_1 - Lambda x_1 - D v_1 - W'mu
- *     W x_1 = 0,    W v_1 = 0
+ *     x_1 = x* + h^2 beta a_1 - W'eta,    x* = x_0 + h v_0 + h^2 (1/2 - beta)
+ *     a_0 v_1 = v* + h gamma a_1,             v* = v_0 + h (1 - gamma) a_0 (1 -
+ *     alpha_m) a_1 + alpha_m a_0 = (1 - alpha_f) r_1 + alpha_f r_0 r_1 = B u_1
+ *     - Lambda x_1 - D v_1 - W'mu W x_1 = 0,    W v_1 = 0
  *
- * r is z'' of the equation of motion, a an average of it over a step. As W W' =
- * I the constraints give eta at once,
+ * r is z'' by the equation of motion, and a is an average of it over a step. As
+ * W W' = I, the constraints give eta directly,
  *
  *     W a_1 = -W v* / (h gamma),    eta = W x* - (h beta / gamma) W v*,
  *
  * and with S = m I + h gamma D + h^2 beta Lambda, m = (1 - alpha_m) / (1 -
- * alpha_f), what is left is
+ * alpha_f), the equations for a_1 and mu are
  *
  *     S a_1 + W'mu = R = B u_1 - Lambda (x* - W'eta) - D v*
  *                        - (alpha_m a_0 - alpha_f r_0) / (1 - alpha_f)
  *     (W S^-1 W') mu = W S^-1 R + W v* / (h gamma).
  *
- * Where an input has jumped since the end of the last step, a_0 and r_0 follow.
+ * If an input jumps between two steps, a_0 and r_0 are changed with it.
  */
 #include "simulate/constrained.h"
 

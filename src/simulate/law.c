@@ -1,13 +1,13 @@
 /*
- * A law g(c, c') of constraints as an input that is linear over a step. At its
- * end c and c' are c* + X g and c'* + V g, c* and c'* without g there, so that
- * g solves
+ * The law g(c, c') of a stabilisation, as an input that is linear over a step.
+ * At the end of the step c and c' are c* + X g and c'* + V g, where c* and c'*
+ * are those with g = 0 there. Hence g solves
  *
  *     R(g) = g - law(c* + X g, c'* + V g) = 0,
  *     J = I - diag(dlaw/dc) X - diag(dlaw/dc') V
  *
- * by Newton's method, with steps halved until |R| falls: a law that is
- * saturated on either side of a layer has corners.
+ * by Newton's method, whose steps are halved until |R| falls: a law that
+ * saturates on both sides of a layer has corners.
  */
 #include "simulate/constrained.h"
 
@@ -44,8 +44,9 @@ void ritz_law_step_free(ritz_law_step *l)
     *l = (ritz_law_step){0};
 }
 
-/* R(g) and, if wanted, J; returns |R|. @p size becomes what rounding of R is
-   relative to: |g| + |law| + |dlaw/dc c| + |dlaw/dc' c'|. */
+/* R(g) and, if wanted, J; returns |R|. @p size becomes the size of its terms,
+   to which rounding of R is relative: |g| + |law| + |dlaw/dc c| + |dlaw/dc'
+   c'|. */
 static double find_residual(const ritz_stabiliser *s, ritz_law_step *l,
                             const double *g, bool wanted, double *size)
 {
@@ -74,7 +75,7 @@ static double find_residual(const ritz_stabiliser *s, ritz_law_step *l,
     return sqrt(sum);
 }
 
-/* Along the change until |R| falls. */
+/* Halve the change until |R| falls. */
 static bool search_line(const ritz_stabiliser *s, ritz_law_step *l,
                         double residual, double *g)
 {

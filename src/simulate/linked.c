@@ -7,8 +7,8 @@
  *     W = V_r',    lambda = S^-1 U_r Sigma_r^-1 mu
  *
  * satisfies G'lambda = W'mu with the least |S lambda|. Rows that nearly depend
- * on others are so as good as any: no step solves with C M^-1 C', whose
- * condition is the square of theirs.
+ * on others cause no loss of digits, because no step solves with C M^-1 C',
+ * whose condition number is the square of that of the rows.
  */
 #include "simulate/constrained.h"
 
@@ -51,7 +51,7 @@ static double row_norm(const ritz_dense *A, int64_t i)
     return sqrt(sum);
 }
 
-/* What each row is divided by: as it is given, or the longest of all. */
+/* The scale of each row: as given, or the length of the longest row. */
 static ritz_status find_scales(const ritz_unjoined *b, const ritz_dense *G,
                                double **out)
 {
@@ -70,8 +70,8 @@ static ritz_status find_scales(const ritz_unjoined *b, const ritz_dense *G,
     return RITZ_OK;
 }
 
-/* x -= (q'x) q for each kept row, twice: once leaves the rounding of large
-   parts. */
+/* x -= (q'x) q for each kept row q. It is done twice, because rounding of large
+   parts is left after the first time. */
 static void take_kept(const ritz_dense *kept, int64_t count, double *x)
 {
     for (int pass = 0; pass < 2; pass++)
@@ -84,7 +84,7 @@ static void take_kept(const ritz_dense *kept, int64_t count, double *x)
         }
 }
 
-/* Rows that follow from those before them, in their order. */
+/* Find the rows that depend on those before them, in their order. */
 static ritz_status name_redundant(const ritz_dense *scaled, ritz_linked *j)
 {
     RITZ_OWN(ritz_dense) rows = {0}, kept = {0};
@@ -111,7 +111,7 @@ static ritz_status name_redundant(const ritz_dense *scaled, ritz_linked *j)
     return RITZ_OK;
 }
 
-/* W and L, by the singular values of the scaled rows. */
+/* W and L, from the singular value decomposition of the scaled rows. */
 static ritz_status decompose_rows(const ritz_unjoined *b, ritz_linked *j)
 {
     const int64_t least = j->num_rows < b->n ? j->num_rows : j->G.ncol;
@@ -147,7 +147,7 @@ static ritz_status find_highest(ritz_linked *j)
     return ritz_stabilised_highest(j, &exact, &j->highest);
 }
 
-/* What an impulse adds to z' of the joined bodies: push - W'W push. */
+/* Change of z' of the joined bodies by an impulse: push - W'W push. */
 static ritz_status join_impulses(ritz_linked *j)
 {
     RITZ_OWN_ARRAY double *part = NULL;

@@ -1,6 +1,6 @@
 /*
- * Stabilisations that work with the multipliers. These cancel the forces of
- * the bodies along the constraints and leave c'' = -nu [McDaniel2000, 4.3.17]:
+ * Stabilisations with multipliers. The multipliers cancel the forces of the
+ * bodies along the constraints, so that c'' = -nu [McDaniel2000, 4.3.17]:
  *
  *     none            nu = 0
  *     baumgarte       nu = 2 alpha c' + beta^2 c                  (4.3.18)
@@ -9,13 +9,13 @@
  *     projection      nu = 0, then z := (I - W'W) z and z' likewise
  *
  * so that S' = -surface S - switch sat(S / layer): the surface S = 0 is reached
- * from S_0 within |S_0| / switch, and on it c falls as exp(-surface t). (4.3.19)
- * cannot be read with certainty in the scan: the first terms are a linear
- * approach to the surface, here at one rate, and the last is the switching that
- * gives sliding modes their name, made continuous within a layer [Slotine1984].
+ * from S_0 within |S_0| / switch, and on it c falls as exp(-surface t). The
+ * scan of (4.3.19) cannot be read with certainty. Its first terms are a linear
+ * approach to the surface, for which we take one rate, and its last term is the
+ * switching of a sliding mode, made continuous within a layer [Slotine1984].
  *
- * A layer of switch times step is the least that a step can stay within: a
- * thinner one makes S alternate, by at most switch times step.
+ * The layer should be at least switch times step: in a thinner one S changes
+ * sign at each step, with a size of at most switch times step.
  */
 #include "simulate/constrained.h"
 

@@ -1,8 +1,8 @@
 /*
  * Stabilisations by energies [McDaniel2000, 4.4.1-2, 4.5.1-2]: constraints are
- * springs, dampers and masses between the bodies, the paper's symmetric
- * matrices alpha, mu and beta over epsilon being multiples of that in which a
- * violation weighs as the mass that it moves,
+ * springs, dampers and masses between the bodies. The paper's symmetric
+ * matrices alpha, mu and beta over epsilon are here multiples of the matrix
+ * that gives a violation the weight of the mass which it moves,
  *
  *     C'(C M^-1 C')^+ C = M Phi W'W Phi'M,
  *
@@ -10,11 +10,12 @@
  *
  *     stiffness = (1 + inertia) w^2,  damping = 2 ratio w (1 + inertia).
  *
- * Of the stiff springs c is some f / stiffness, f = c'' of free bodies: ten
- * times the stiffness gives a tenth of the violation. An inertia leaves w, and
- * so the step, as it is, and makes the violation smaller by 1 + inertia.
+ * With stiff springs c is about f / stiffness, where f is c'' of free bodies:
+ * ten times the stiffness gives a tenth of the violation. An inertia does not
+ * change w, nor therefore the step, and divides the violation by 1 + inertia.
  *
- * hybrid is a damper whose coefficient is that of a sliding mode:
+ * hybrid has a damper whose coefficient is proportional to |S| of a sliding
+ * mode:
  *
  *     stiffness = w^2,   g = -|S| / smax c',   S = c' + surface c
  */

@@ -1,5 +1,5 @@
-/* The table of stabilisations: a new one is a descriptor in a file, and a
-   row. */
+/* The table of stabilisations. A new one needs a descriptor in a file, and a
+   row here. */
 #include <ritz/constrained.h>
 
 const ritz_stabilisation *const ritz_stabilisations[] = {

@@ -1,16 +1,16 @@
 /*
- * The motion of joined bodies with what a stabilisation adds, for integrators
- * of the house. With P = I - W'W, and with multipliers
+ * The motion of joined bodies with the terms of a stabilisation, to which any
+ * ritz_integrator can be applied. With P = I - W'W, it is with multipliers
  *
  *     z'' = P (B u - D z' - Lambda z) - W'(damping c' + stiffness c - g),
  *
- * without them
+ * and without them
  *
  *     (I + inertia W'W) z'' + (D + damping W'W) z'
  *         + (Lambda + stiffness W'W) z = B u + W'g.
  *
- * With multipliers c'' = - damping c' - stiffness c + g whatever the bodies do,
- * and the motion of the joined bodies is not changed by it.
+ * With multipliers c'' = - damping c' - stiffness c + g for any motion of the
+ * bodies, and the motion that satisfies the constraints does not change.
  */
 #include "simulate/constrained.h"
 
@@ -18,7 +18,7 @@
 
 #include <math.h>
 
-/* A -= W'(W A), and then A += add W'W if it is square. */
+/* A -= W'(W A) if @p projected, then A += add W'W. */
 static ritz_status fold(const ritz_linked *j, bool projected, double add,
                         ritz_dense *A)
 {
@@ -45,7 +45,7 @@ static ritz_status fill_stiffness(const ritz_linked *j, ritz_dense *K)
     return RITZ_OK;
 }
 
-/* Inputs of the bodies, and behind them g. */
+/* Inputs of the bodies, followed by g. */
 static ritz_status fill_inputs(const ritz_linked *j, const ritz_stabiliser *s,
                                ritz_motion *m)
 {
@@ -88,7 +88,7 @@ ritz_status ritz_stabilised_motion(const ritz_linked *joined,
     return RITZ_OK;
 }
 
-/* Of a symmetric matrix, 0 of an empty one. */
+/* Largest eigenvalue of a symmetric matrix; 0 for an empty one. */
 static ritz_status find_largest(const ritz_dense *A, double *out)
 {
     RITZ_OWN_ARRAY double *lambda = NULL;
@@ -100,9 +100,10 @@ static ritz_status find_largest(const ritz_dense *A, double *out)
 }
 
 /*
- * With multipliers the larger of the joined bodies' own, which are those of
- * P Lambda P, and of c. Without them those of F K F, F = (I + inertia W'W)^-1/2
- * = I + ((1 + inertia)^-1/2 - 1) W'W.
+ * With multipliers, the larger of the highest eigenvalue of P Lambda P, which
+ * is that of the joined bodies, and the largest stiffness of c. Without them,
+ * the highest eigenvalue of F K F, F = (I + inertia W'W)^-1/2 = I + ((1 +
+ * inertia)^-1/2 - 1) W'W.
  */
 ritz_status ritz_stabilised_highest(const ritz_linked *joined,
                                     const ritz_stabiliser *s, double *out)
