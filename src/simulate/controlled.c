@@ -1,4 +1,5 @@
-/* Runs of closed loops, by whichever march. */
+/* Runs of closed loops, by the march of split or sampled loops or by that of
+   exact ones. */
 #include "simulate/controlled.h"
 
 #include "base/alloc.h"
@@ -21,7 +22,8 @@ static ritz_status start_march(ritz_model subject, const ritz_motion *motion,
     return ritz_exact_start(motion, &plant, controlled, request->step, out);
 }
 
-/* What is measured of an impulse directly is one too, and not in a sample. */
+/* An impulse that reaches a measured output by feedthrough is an impulse there,
+   which has no value at a sample. */
 static ritz_status check_impulses(ritz_model subject, const ritz_motion *motion,
                                   const ritz_simulation_request *request,
                                   const ritz_loop *loop)

@@ -6,23 +6,25 @@
 
 #include <ritz/controlled.h>
 
-/** Whether sample and delay are multiples of a step: how many. */
+/** Numbers of steps in the sample and in the delay.
+ * @return RITZ_ERR_ARGUMENT if they are not whole */
 ritz_status ritz_controlled_counts(const ritz_controlled *controlled,
                                    double step, int64_t *period,
                                    int64_t *delay);
 
-/** Whether a model, a request and a controller fit each other. */
+/** Refuse a model, a request and a controller that do not fit each other. */
 ritz_status ritz_controlled_check(ritz_model subject,
                                   const ritz_simulation_request *request,
                                   const ritz_controlled *controlled);
 
-/** A plant, as it is integrated, in first-order form, at most RITZ_LOOP_POLES
- * states with those of a controller, and not sparse. */
+/** The motion of a plant in first-order form. With a controller, it has at most
+ * RITZ_LOOP_POLES states, and it is not sparse. */
 ritz_status ritz_motion_states(const ritz_motion *motion, const ritz_io *io,
                                ritz_state_space *out);
 
 /**
- * The march of the plant, whose steps the controller interrupts.
+ * The march of split and sampled loops: that of the plant, with the controller
+ * between its steps.
  *
  * @param[in] motion  borrowed, as all of @p controlled
  */
@@ -31,8 +33,8 @@ ritz_status ritz_split_start(const ritz_motion *motion,
                              const ritz_integrator *integrator, double step,
                              double rho, ritz_march *out);
 
-/** Numbers of a split march that a step, or a sample, maps: x, v and what else
- * it remembers, but no sums. */
+/** How many numbers of a split march a step, or a sample, maps: x, v and its
+ * other memory, without sums such as work. */
 int64_t ritz_split_order(const ritz_march *march);
 
 /** z := the map of z without inputs, over one sample. */
@@ -44,15 +46,15 @@ ritz_status ritz_exact_start(const ritz_motion *motion,
                              const ritz_controlled *controlled, double step,
                              ritz_march *out);
 
-/* Diagnostics that both have: outputs of the controller, its states' norm, its
-   work. */
+/* Diagnostics of all closed loops: outputs of the controller, the norm of its
+   states, and its work. */
 typedef struct ritz_loop_notes {
     int64_t count;
     char (*name)[RITZ_NAME_SIZE];
-    const char **list; /* of the names */
+    const char **list; /* the names, as a march takes them */
     int64_t num_states;
     const double *states; /* of the controller, borrowed */
-    double *acting;       /* its outputs, as found last */
+    double *acting;       /* its outputs that act at present */
     const double *work;   /* borrowed */
 } ritz_loop_notes;
 

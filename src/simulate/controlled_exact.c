@@ -1,12 +1,12 @@
 /*
- * A closed loop by one exponential. With z = [x; v; w] and
+ * A closed loop by one matrix exponential. With z = [x; v; w] and
  *
  *     z' = A z + B r,   exp([A B/s 0; 0 0 I/h; 0 0 0] h) = [E G/s H/s; ...]
  *
- * of plant and controller together, z_1 = E z_0 + G r_0 + H (r_1 - r_0), s the
- * largest entry of B. What damping takes, what all forces give and what those of
- * the controller give over a step are forms of [z_0; s r_0; s (r_1 - r_0)] that
- * are integrated with it.
+ * of plant and controller together, z_1 = E z_0 + G r_0 + H (r_1 - r_0), where
+ * s is the largest entry of B. The energy that damping dissipates over a step,
+ * the work of all forces and that of the controller are quadratic forms of
+ * [z_0; s r_0; s (r_1 - r_0)], which are integrated with the exponential.
  */
 #include "simulate/controlled.h"
 
@@ -20,18 +20,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Forms that are integrated: of damping, of all forces, of the controller's. */
+/* Quadratic forms that are integrated: power of damping, of all forces, and of
+   the forces of the controller. */
 enum { FORMS = 3 };
 
 RITZ_ARRAY_OF(ritz_dense);
 
 typedef struct exact {
-    int64_t n, states; /* rows of z, and of w, its end */
+    int64_t n, states; /* rows of z; of w, its last part */
     double scale;
     ritz_dense E;        /* z_1 over [z; s r; s dr] */
-    ritz_dense W[FORMS]; /* {0}: energies are not wanted */
+    ritz_dense W[FORMS]; /* {0}: energies are not requested */
     ritz_dense C, D;     /* of the closed loop */
-    ritz_dense v;        /* what the controller puts out, over [z; r] */
+    ritz_dense v;        /* outputs of the controller over [z; r] */
     double *memory;      /* w, work */
     double *z, *z1;
     ritz_loop_notes notes;
@@ -50,7 +51,7 @@ static void release_exact(void *own)
     RITZ_FREE(s->memory, s->z, s->z1, s);
 }
 
-/* [x; v; w; r] into z. */
+/* z = [x; v; w; r] */
 static void gather(const ritz_march *march, const double *r, exact *s)
 {
     const int64_t n = march->motion->n;
@@ -116,7 +117,7 @@ static void diagnose_exact(const ritz_march *march, double *out)
     ritz_loop_notes_fill(&s->notes, out);
 }
 
-/* The matrix of [z; s r; s dr]'. */
+/* The matrix whose exponential propagates [z; s r; s (r_1 - r_0)]. */
 static ritz_status exact_matrix(const ritz_state_space *closed, double step,
                                 exact *s, ritz_dense *out)
 {
@@ -134,7 +135,7 @@ static ritz_status exact_matrix(const ritz_state_space *closed, double step,
     return RITZ_OK;
 }
 
-/* Q += v'R z, symmetric, v being rows n to 2 n of z. */
+/* Add the form factor v'R z to Q symmetrically; v is in rows n to 2 n of z. */
 static void add_power(double factor, int64_t n, const ritz_dense *R,
                       ritz_dense *Q)
 {
@@ -147,8 +148,9 @@ static void add_power(double factor, int64_t n, const ritz_dense *R,
         }
 }
 
-/* v'D v, v'(all forces), v'(those of the controller): rates of v less those of
-   the plant alone, and less its inputs. */
+/* v'D v, v'(all forces) and v'(forces of the controller). All forces are those
+   that change the rate of v from that of the plant without inputs; those of the
+   controller are the same without the inputs of the loop. */
 static ritz_status exact_forms(const ritz_motion *m,
                                const ritz_state_space *plant,
                                const ritz_dense *A, double scale,
@@ -199,7 +201,7 @@ static ritz_status fill_exact(const ritz_motion *motion,
     return RITZ_OK;
 }
 
-/* The loop, if it is small enough. */
+/* Close the loop, and refuse one that is too large. */
 static ritz_status close_plant(const ritz_state_space *plant,
                                const ritz_controlled *controlled,
                                ritz_state_space *out)

@@ -1,8 +1,9 @@
 /*
- * Whether a closed loop is stable, and whether it is as it is propagated: the
- * poles of the continuous loop, and the spectral radius of the linear map from
- * one step, or one sample, to the next. Of a small map the matrix is found
- * column by column; a large one is applied to a vector until its growth shows.
+ * Stability of a closed loop, and of its propagation in time: the poles of the
+ * continuous loop, and the spectral radius of the linear map from one step, or
+ * one sample, to the next. The matrix of a small map is found column by column;
+ * a large map is applied to a vector, from whose growth the radius is
+ * estimated.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -14,13 +15,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Most numbers of a map whose eigenvalues are computed. */
+/* Largest order of a map whose eigenvalues are computed. */
 enum { MOST_MAPPED = 160 };
 
-/* How a loop is propagated, but for the step. */
+/* How a loop is propagated, for any step. */
 typedef struct scheme {
     const ritz_simulation_request *request;
-    ritz_motion motion; /* as borrowed, without energies, at any step */
+    ritz_motion motion; /* borrowed; without energies, at any step */
     const ritz_controlled *controlled;
 } scheme;
 
@@ -51,7 +52,7 @@ static ritz_status radius_of_matrix(ritz_march *march, ritz_outlook *out)
     return RITZ_OK;
 }
 
-/* ln |map^count z| / |z|, z of length one before and after. */
+/* ln(|map^count z| / |z|); z has length one before and after. */
 static ritz_status grow_vector(ritz_march *march, int64_t n, int count,
                                double *z, double *out)
 {
@@ -102,8 +103,9 @@ static ritz_status find_radius(const scheme *by, double step, ritz_outlook *out)
                : radius_of_growth(&march, out);
 }
 
-/* A stable and an unstable step; `high` is infinite if there is none up to the
-   whole run, `low` 0 if all are unstable. */
+/* A stable step `low` and an unstable one `high`. `high` is infinite if all
+   steps up to the duration of the run are stable, `low` is 0 if all are
+   unstable. */
 static ritz_status bracket_limit(const scheme *by, const ritz_outlook *at,
                                  double *low, double *high)
 {
@@ -151,7 +153,7 @@ static ritz_status find_limit(const scheme *by, ritz_outlook *out)
     return RITZ_OK;
 }
 
-/* Poles of the loop, if there are not too many. */
+/* Poles of a continuous loop that is not too large. */
 static ritz_status probe_loop(ritz_model subject, const ritz_motion *motion,
                               const ritz_controlled *controlled,
                               ritz_outlook *out)

@@ -1,6 +1,5 @@
-/* What all closed loops in time have in common: whether a controller fits a model
-   and a step, the plant in first-order form, and what is noted of the
-   controller. */
+/* Common parts of closed loops in time: checks of a controller with a model and
+   a step, the plant in first-order form, and diagnostics of the controller. */
 #include "simulate/controlled.h"
 
 #include "base/alloc.h"
@@ -12,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A whole number of steps? */
+/* Whether a ratio is a whole number, except for rounding. */
 static bool is_whole(double ratio, int64_t *out)
 {
     const double whole = round(ratio);
@@ -96,7 +95,7 @@ ritz_status ritz_controlled_check(ritz_model subject,
     return ritz_loop_check(controlled->loop, &plant, &io);
 }
 
-/* Rates of the velocities: -M^-1 K, -M^-1 D. */
+/* The matrices -M^-1 K and -M^-1 D of accelerations. */
 static ritz_status find_rates(const ritz_motion *m, ritz_dense *K,
                               ritz_dense *D)
 {
@@ -114,7 +113,7 @@ static ritz_status find_rates(const ritz_motion *m, ritz_dense *K,
     return ritz_context(ritz_general_solve_scaled(&m->M, false, D), "M");
 }
 
-/* [0 I; -M^-1 K, -M^-1 D] and so on. */
+/* A = [0 I; -M^-1 K, -M^-1 D], with B, C and D likewise. */
 static ritz_status fill_states(const ritz_motion *m, ritz_state_space *out)
 {
     const int64_t n = m->n;
@@ -173,7 +172,7 @@ ritz_status ritz_loop_notes_new(const ritz_state_space *controller, bool work,
 
 void ritz_loop_notes_fill(const ritz_loop_notes *notes, double *out)
 {
-    /* the last one, or the last but one, is the states' */
+    /* the norm of the states follows the outputs */
     const int64_t q = notes->work ? notes->count - 2 : notes->count - 1;
 
     memcpy(out, notes->acting, (size_t)q * sizeof *out);

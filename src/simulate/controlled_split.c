@@ -1,19 +1,20 @@
 /*
- * A plant in a closed loop that is propagated in parts [Sirlin1992]: the plant
- * over a step h with the controller's output held, the controller with what it
- * measures held, exactly each,
+ * A closed loop whose parts are propagated separately [Sirlin1992]: over a step
+ * h the plant with the output of the controller held constant, and the
+ * controller with its measurement held constant, each exactly,
  *
  *     x_1 = exp(A h) x_0 + integral exp(A s) ds B (r + s v_0)
  *     w_1 = exp(A_c h) w_0 + integral exp(A_c s) ds B_c e_0
  *     e_0 = Q (C_y x_0 + s D_yu C_c w_0 + D_y r_0),   v_0 = C_c w_0 + D_c e_0
  *
- * which differs from the closed loop's own exponential by O(h^2) a step, so
- * that the error is of first order. The plant may also go by any other
- * integrator.
+ * which differs from the exponential of the closed loop by O(h^2) a step, so
+ * that the error is of first order. Any other integrator may propagate the
+ * plant.
  *
- * A sampled controller is the same with several steps from one sample to the
- * next, and no error: its output is held indeed. An output that comes late
- * waits in a line, and measures no feedthrough of itself.
+ * A sampled controller is propagated in the same way, with several steps from
+ * one sample to the next. This has no error, because its output really is held.
+ * With a delay, outputs wait in a queue (`line`), and what is measured at a
+ * sample depends on the output that then acts, not on the one computed from it.
  */
 #include "simulate/controlled.h"
 
@@ -24,22 +25,22 @@
 #include <string.h>
 
 typedef struct split {
-    ritz_march plant; /* its x and v are those of the whole */
+    ritz_march plant; /* x and v are shared with the march of the loop */
     const ritz_loop *loop;
     double sign;
     int64_t states, measured, driven; /* of the controller */
     int64_t period, delay;            /* steps */
-    int64_t kept;                     /* outputs of the controller, a sample
-                                         each, the last one first */
-    ritz_dense A, B, C, D;            /* from a sample to the next */
-    ritz_dense e;    /* what is measured, over [x; v; w; r]; with a delay
-                        without what the controller puts out */
+    int64_t kept;                     /* samples whose outputs are in `line`,
+                                         the last one first */
+    ritz_dense A, B, C, D;            /* of the controller, sample to sample */
+    ritz_dense e;    /* measurement, over [x; v; w; r]; with a delay, without
+                        the part of the controller's output */
     ritz_dense D_yu; /* measured x driven */
-    double *memory;  /* of the plant, then: */
+    double *memory;  /* of the plant, and then w, line and work */
     double *w, *line, *work;
     double *z;       /* [x; v; w; r] */
     double *seen;    /* e */
-    double *next;    /* w */
+    double *next;    /* next w */
     double *u0, *u1; /* of the plant */
     ritz_loop_notes notes;
 } split;
@@ -67,7 +68,7 @@ static void multiply(const ritz_dense *A, const double *x, double *y)
     ritz_motion_gemv(A, 1.0, x, y);
 }
 
-/* How many samples old the output is that acts in a step; the last sample was
+/* Age, in samples, of the output that acts in a step, if the last sample was
    taken `phase` steps before. */
 static int64_t age_of(const split *s, int64_t phase)
 {
@@ -75,7 +76,7 @@ static int64_t age_of(const split *s, int64_t phase)
                              : (s->delay - phase + s->period - 1) / s->period;
 }
 
-/* What the controller measures and puts out at a sample; r are the inputs. */
+/* Measurement and output of the controller at a sample, with inputs r. */
 static void find_output(const split *s, const ritz_march *march,
                         const double *r, double *v)
 {
@@ -91,14 +92,14 @@ static void find_output(const split *s, const ritz_march *march,
     memcpy(z, s->w, (size_t)s->states * sizeof *z);
     memcpy(z + s->states, r, (size_t)march->motion->B.ncol * sizeof *z);
     multiply(&s->e, s->z, s->seen);
-    if (s->delay > 0) /* the line has not moved yet */
+    if (s->delay > 0) /* `line` is still that of the last sample */
         ritz_motion_gemv(&s->D_yu, s->sign,
                          s->line + (age_of(s, 0) - 1) * s->driven, s->seen);
     multiply(&s->C, s->w, v);
     ritz_motion_gemv(&s->D, 1.0, s->seen, v);
 }
 
-/* The controller goes on to its next sample. */
+/* Take a sample: keep the output, and advance the states of the controller. */
 static void take_sample(split *s, const ritz_march *march, const double *r)
 {
     const size_t row = (size_t)s->driven * sizeof *s->line;
@@ -118,7 +119,7 @@ static void add_output(const split *s, const double *v, double *u)
         u[s->loop->driven[j]] += s->sign * v[j];
 }
 
-/* (s v)'B'x: a held force does work over a displacement. */
+/* (s v)'B'x, whose change over a step is the work of forces that are held. */
 static double moment_of(const split *s, const ritz_march *march,
                         const double *v)
 {
@@ -164,7 +165,7 @@ static ritz_status advance_split(ritz_march *march, const double *u0,
     return RITZ_OK;
 }
 
-/* What acts from the present time on, before its sample is taken. */
+/* The output that acts from the present time on, before a sample is taken. */
 static void find_acting(const ritz_march *march, const double *r)
 {
     split *s = march->own;
@@ -210,7 +211,8 @@ static void diagnose_split(const ritz_march *march, double *out)
     ritz_loop_notes_fill(&s->notes, out);
 }
 
-/* A, B, C, D of the controller from a sample to the next. */
+/* A, B, C and D of the controller as a discrete system from sample to
+   sample. */
 static ritz_status sample_controller(const ritz_controlled *controlled,
                                      double period, split *s)
 {
@@ -229,14 +231,14 @@ static ritz_status sample_controller(const ritz_controlled *controlled,
     return RITZ_OK;
 }
 
-/* What is measured. */
+/* The rows of the measurement. */
 static ritz_status find_measured(const ritz_motion *motion,
                                  const ritz_controlled *controlled, split *s)
 {
     const ritz_loop *loop = controlled->loop;
     const ritz_state_space *c = controlled->controller;
     RITZ_OWN(ritz_dense) C = {0}, D_y = {0};
-    /* a late output is measured as it acts, not through this feedthrough */
+    /* with a delay, the output that acts is added by D_yu at each sample */
     RITZ_OWN(ritz_state_space) still = {0};
 
     if (motion->form == RITZ_FORM_STATES)
@@ -329,7 +331,7 @@ int64_t ritz_split_order(const ritz_march *march)
     return (march->v ? 2 : 1) * march->motion->n + march->num_memory - 1;
 }
 
-/* Between z and the march, which it is copied into, or out of. */
+/* Copy z into the march, or the march into z. */
 static void move_numbers(bool into, ritz_march *march, double *z)
 {
     const int64_t n = march->motion->n;
