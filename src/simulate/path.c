@@ -4,7 +4,7 @@
  *     linear   a = from + (to - from) s
  *     smooth   a = from + (to - from) (10 s^3 - 15 s^4 + 6 s^5)
  *
- * and of a table the cubic spline whose rate is 0 at both ends.
+ * A table is interpolated by the cubic spline whose rate is 0 at both ends.
  */
 #include "base/alloc.h"
 #include "base/text.h"
@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The numbers of FROM:TO:T, T perhaps with an s behind it, and ":smooth". */
+/* Read FROM:TO:T, where T may end in "s", and ":smooth" may follow. */
 static bool read_words(const char *text, ritz_path *out)
 {
     char copy[RITZ_NAME_SIZE] = "";
@@ -40,13 +40,13 @@ static bool read_words(const char *text, ritz_path *out)
 }
 
 /*
- * Second rates m of the spline: with h_k = t_k+1 - t_k, d_k = (a_k+1 - a_k) /
- * h_k
+ * Second derivatives m of the spline: with h_k = t_k+1 - t_k and d_k = (a_k+1 -
+ * a_k) / h_k,
  *
  *     h_k-1 m_k-1 + 2 (h_k-1 + h_k) m_k + h_k m_k+1 = 6 (d_k - d_k-1)
  *
  * and at the ends, where the rate is 0, 2 h_0 m_0 + h_0 m_1 = 6 d_0 and h m_n-1
- * + 2 h m_n = -6 d. Diagonally dominant, so without pivots.
+ * + 2 h m_n = -6 d. The matrix is diagonally dominant and needs no pivots.
  */
 static ritz_status bend_table(ritz_path *path)
 {
@@ -171,7 +171,8 @@ static void range_table(const ritz_path *path, double *range)
 
         table_at(path, k, path->time[k], at);
         root = sqrt(fmax(at[2] * at[2] - 2.0 * jerk * at[1], 0.0));
-        /* rate + m s + jerk s^2 / 2 = 0 in the form that does not cancel */
+        /* roots of rate + m s + jerk s^2 / 2, in the form without
+           cancellation */
         root = -(at[2] + copysign(root, at[2]));
         roots[0] = root != 0.0 ? 2.0 * at[1] / root : 0.0;
         roots[1] = jerk != 0.0 ? root / jerk : 0.0;

@@ -7,9 +7,10 @@
  *     u'' = T q'' + 2 x' T_x q' + (x'^2 T_xx + x'' T_x) q
  *
  * Bodies that turn with x have the acceleration u'' + 2 x' N u' + x'' N u +
- * x'^2 N^2 u in space, N u = n x u. With G = <phi, N phi>, H = <N phi, N phi> in
- * the mass of the bodies, S = T'M T_x + T'G T, and R = S_k T of the springs of
- * joints, whose elongation is R q, the virtual work on T dq gives
+ * x'^2 N^2 u in space, N u = n x u. Let G = <phi, N phi> and H = <N phi, N phi>
+ * in the inner product of the mass of the bodies, S = T'M T_x + T'G T, and R q
+ * = S_k T q the elongations of the springs of joints. Virtual work on T dq
+ * gives
  *
  *     M_r q'' + C q' + K q = T'B f
  *     M_r = T'M T
@@ -17,26 +18,27 @@
  *     K = T'K T + R'k R + x'^2 (T'M T_xx + 2 T'G T_x - T'H T) + x'' S
  *         + x' (T'D T_x + R'c R_x)
  *
- * Ratios add D_r to C and x' D_r S to K, as D = M Phi Delta Phi'M does. Without
- * the terms x' and x'' are 0 here, while T still moves.
+ * Damping ratios add D_r to C and x' D_r S to K, as D = M Phi Delta Phi'M does.
+ * In a run without the rates of T, x' and x'' are 0 in these matrices, while T
+ * still changes.
  *
  * Forces that the commanded motion itself causes do not depend on q and are
- * left out: q are motions about it.
+ * left out: q is the motion relative to it.
  *
- * The trapezoidal rule: the end of each step is in equilibrium,
+ * By the trapezoidal rule the end of each step is in equilibrium,
  *
  *     (M_1 + h/2 C_1 + h^2/4 K_1) a_1 = B_1 f_1 - C_1 v* - K_1 q*
  *     q* = q_0 + h v_0 + h^2/4 a_0,   v* = v_0 + h/2 a_0
  *
- * Energies are those of u. Of E = (|u' + x' N u|^2_M + u'K u + k (R q)^2) / 2
+ * Energies are those of u. With E = (|u' + x' N u|^2_M + u'K u + k (R q)^2) / 2
  *
  *     E' = f'B'u' - u'D u' - c (R q)'^2 + x' P
  *     P = (T_x q + N T q)'M (acceleration) + (T_x q)'(D u' + K u - B f)
  *         + (R_x q)'(k R q + c (R q)')
  *
- * x' P is the power of the actuator, whose integral is the trapezoidal rule's
- * too. Without the terms P is q'K_x q / 2 + q''M_x q' / 2, what such a program
- * would find.
+ * x' P is the power of the actuator, which is integrated by the trapezoidal
+ * rule too. In a run without the rates of T, P is q'K_x q / 2 + q''M_x q' / 2,
+ * which is what a program would compute that only exchanges matrices.
  */
 #include "simulate/swept.h"
 
@@ -52,21 +54,21 @@ typedef struct swept {
     const ritz_swept_model *model;
     const ritz_path *path;
     bool terms, settled;
-    bool accelerations; /* are outputs */
+    bool accelerations; /* there are outputs of acceleration */
     ritz_swept_piece piece;
     double w[3][4];
-    double rate[2]; /* of x, as it is */
-    double used[2]; /* 0 without the terms */
+    double rate[2]; /* x' and x'' */
+    double used[2]; /* x' and x'' in the equations; 0 without rates of T */
     ritz_dense M, C, K, S, B;
     ritz_dense R, Rx, Dr;
-    ritz_dense push;       /* M_r^-1 B, where accelerations are outputs */
-    double *memory;        /* all that follow */
+    ritz_dense push;       /* M_r^-1 B, if `accelerations` */
+    double *memory;        /* holds a, last, along, power and actuator */
     double *a;             /* r */
     double *last;          /* inputs at the end of the last step */
     double *along;         /* B'T q, of each input */
-    double *power;         /* of the actuator, and what is dissipated */
+    double *power;         /* of the actuator, and of damping */
     double *actuator;      /* its work */
-    double *o, *p, *z, *y; /* 4r: of u, T_x q, u' and u'' */
+    double *o, *p, *z, *y; /* 4r: u, T_x q, u' and u'' as X o, X p, ... */
     double *v;             /* r */
 } swept;
 
@@ -110,7 +112,7 @@ static void add_springs(const ritz_dense *L, const double *d,
                                              ritz_dense_col(R, j)[k];
 }
 
-/* C and K without what ratios add to K. */
+/* M_r, S, C and K, without the damping of ratios. */
 static void fill_matrices(swept *s)
 {
     const ritz_swept_model *m = s->model;
@@ -138,7 +140,7 @@ static void fill_matrices(swept *s)
     ritz_dense_add(x2, &s->S, &s->K);
 }
 
-/* D_r of ratios, and x' D_r S. */
+/* Add the damping of ratios: D_r to C, and x' D_r S to K. */
 static ritz_status add_ratios(swept *s)
 {
     RITZ_OWN(ritz_dense) more = {0};
@@ -152,7 +154,7 @@ static ritz_status add_ratios(swept *s)
     return RITZ_OK;
 }
 
-/* Everything at step k of the run. */
+/* Compute all matrices at time t. */
 static ritz_status refresh(double t, swept *s)
 {
     const ritz_swept_model *m = s->model;
@@ -184,7 +186,8 @@ static ritz_status refresh(double t, swept *s)
     return ritz_general_solve(&s->M, false, &s->push);
 }
 
-/* u, T_x q, u' and u'' as columns of X, with rates of x as @p rate. */
+/* The coefficients of u, T_x q, u' and u'' over the columns of X, with rates of
+   x in @p rate. */
 static void spread_state(const ritz_march *march, const double *rate, swept *s)
 {
     const int64_t r = s->model->order;
@@ -205,7 +208,7 @@ static void spread_state(const ritz_march *march, const double *rate, swept *s)
     ritz_swept_spread(s->w[1], x2, r, q, s->y);
 }
 
-/* |u' + x' N u|^2_M / 2 of what was spread. */
+/* |u' + x' N u|^2_M / 2 for the state of the last spread_state. */
 static double kinetic_energy(const swept *s, double x1)
 {
     const ritz_swept_piece *p = &s->piece;
@@ -241,7 +244,7 @@ static void find_energy(const ritz_march *march, double *kinetic,
     *potential = 0.5 * (bilinear(&s->piece.K, s->o, s->o) + springs);
 }
 
-/* (T_x q + N T q)'M of the acceleration. */
+/* (T_x q + N T q)'M (acceleration) */
 static double inertia_power(const swept *s)
 {
     const ritz_swept_piece *p = &s->piece;
@@ -255,7 +258,7 @@ static double inertia_power(const swept *s)
            x2 * bilinear(&p->H, s->o, s->o);
 }
 
-/* What a program without the terms would find: q''M_x q' / 2. */
+/* q''M_x q' / 2, in a run without rates of T. */
 static double naive_power(const ritz_march *march, swept *s)
 {
     const int64_t r = s->model->order;
@@ -283,7 +286,7 @@ static double spring_power(const ritz_march *march, const swept *s,
     return power;
 }
 
-/* Of ratios: q' + x' S q is damped by D_r. */
+/* Power of the damping of ratios: D_r damps q' + x' S q. */
 static double ratio_power(const ritz_march *march, swept *s, double *lost)
 {
     const int64_t r = s->model->order;
@@ -300,7 +303,7 @@ static double ratio_power(const ritz_march *march, swept *s, double *lost)
     return s->terms ? ritz_motion_dot(r, turned, force) : 0.0;
 }
 
-/* Power of the actuator and of damping with inputs u; settled. */
+/* Power of the actuator and of damping, with inputs u, once v is q'. */
 static void find_powers(const ritz_march *march, const double *u, swept *s)
 {
     const ritz_swept_piece *p = &s->piece;
@@ -323,7 +326,7 @@ static void find_powers(const ritz_march *march, const double *u, swept *s)
     s->power[1] = lost;
 }
 
-/* B'T q of each input. */
+/* The displacements B'T q along the inputs. */
 static void find_along(const ritz_march *march, swept *s)
 {
     for (int64_t j = 0; j < s->B.ncol; j++)
@@ -331,7 +334,7 @@ static void find_along(const ritz_march *march, swept *s)
             ritz_motion_dot(s->B.nrow, ritz_dense_col(&s->B, j), march->x);
 }
 
-/* a from equilibrium with inputs u, where x is now. */
+/* a from equilibrium at the present x, with inputs u. */
 static ritz_status find_acceleration(const ritz_march *march, const double *u,
                                      swept *s)
 {
@@ -365,7 +368,7 @@ static ritz_status settle_swept(ritz_march *march, const double *u)
     return balance_start(march, u, s);
 }
 
-/* Whether an input is another than at the end of the last step. */
+/* Whether an input has changed since the end of the last step. */
 static bool has_jumped(const swept *s, const double *u)
 {
     for (int64_t j = 0; j < s->B.ncol; j++)
@@ -520,8 +523,8 @@ static ritz_status start_swept(const ritz_swept_model *model,
     return refresh(0.0, s);
 }
 
-/* What ritz_march_run asks of a motion: its order, how x0 becomes q, impulses,
-   and numbers of inputs and outputs. */
+/* The parts of a motion that ritz_march_run needs: its order, the map from x0
+   to q, impulses, and numbers of inputs and outputs. */
 static ritz_status fill_motion(const ritz_swept_model *model, ritz_motion *out)
 {
     out->form = RITZ_FORM_DENSE;

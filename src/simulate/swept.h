@@ -1,11 +1,11 @@
-/* A swept model at a setting: what its march and its builder share. */
+/* A swept model at a setting, as both its assembly and its march need it. */
 #ifndef RITZ_SIMULATE_SWEPT_H
 #define RITZ_SIMULATE_SWEPT_H
 
 #include <ritz/swept.h>
 
 /**
- * The second derivatives of the splines through F, whose knots are there.
+ * Compute the second derivatives of the splines through the knots of F.
  *
  * @param[in,out] model  bend is written
  */
@@ -16,12 +16,12 @@ ritz_status ritz_swept_values(const ritz_swept_model *model, double x,
                               ritz_dense *out);
 
 /*
- * A spline between two knots, F = sum_k c_k s^k with s from 0 to 1: products of
- * X = [c_0 c_1 c_2 c_3] of T with the matrices of the bodies, from which all
- * matrices at x follow without Q.
+ * A piece of a spline between two knots, F = sum_k c_k s^k with s from 0 to 1.
+ * It has the products of X = [c_0 c_1 c_2 c_3], for T, with the matrices of the
+ * bodies, so that the cost of the matrices at x does not depend on Q.
  */
 typedef struct ritz_swept_piece {
-    int64_t at;               /* of the knot before; -1: of none yet */
+    int64_t at;               /* number of the knot before it; -1: none yet */
     ritz_dense M, K, D, G, H; /* 4r x 4r: X'M X, ... */
     ritz_dense ST;            /* springs x 4r */
     ritz_dense ratios;        /* r x 4r */
@@ -29,23 +29,22 @@ typedef struct ritz_swept_piece {
     ritz_dense C, Cv, Ca;     /* outputs x 4r: C X, ... */
 } ritz_swept_piece;
 
-/** Move @p piece to where x is, unless it is there. */
+/** Compute the piece that contains x, unless @p piece is that piece. */
 ritz_status ritz_swept_piece_move(const ritz_swept_model *model, double x,
                                   ritz_swept_piece *piece);
 void ritz_swept_piece_free(ritz_swept_piece *piece);
 
-/** Of x in a piece: powers of s, and their first and second derivatives by
- * x. */
+/** Powers of s at x in a piece, and their first and second derivatives by x. */
 void ritz_swept_weights(const ritz_swept_model *model, int64_t at, double x,
                         double w[static 3][4]);
 
-/** out += factor sum_kl a_k b_l W_kl, W_kl the r x r blocks of W; nothing of
- * {0}. */
+/** out += factor sum_kl a_k b_l W_kl, W_kl the r x r blocks of W; W {0} is
+ * zero. */
 void ritz_swept_contract(const ritz_dense *W, const double a[static 4],
                          const double b[static 4], double factor,
                          ritz_dense *out);
 
-/** out = sum_k w_k c_k, c_k the blocks of r columns. */
+/** out = sum_k w_k c_k, c_k the blocks of r columns of c. */
 void ritz_swept_combine(const ritz_dense *c, const double w[static 4],
                         ritz_dense *out);
 

@@ -1,17 +1,19 @@
 /*
- * Splines over the setting of a joint, and matrices in the basis that they
- * interpolate. On equally spaced knots with values f_i the second derivatives
- * m_i of the cubic spline follow from
+ * Splines over the setting of a joint, and matrices in the interpolated basis.
+ * On equally spaced knots with values f_i the second derivatives m_i of the
+ * cubic spline follow from
  *
  *     m_i-1 + 4 m_i + m_i+1 = 6 (f_i-1 - 2 f_i + f_i+1) / h^2
  *
- * and, third derivatives being continuous at the second and at the last but one
- * knot ("not a knot"), m_0 = 2 m_1 - m_2, so that m_1 is the second difference
- * there; likewise at the end [DeBoor2001]. Errors are of order h^4 in f, h^3 in
- * f' and h^2 in f''. Between knots i and i + 1, with s = (x - x_i) / h,
+ * and from the condition "not a knot" [DeBoor2001]: the third derivative is
+ * continuous at the second knot, so that m_0 = 2 m_1 - m_2 and m_1 is the
+ * second difference there, and likewise at the last knot but one. Errors are of
+ * order h^4 in f, h^3 in f' and h^2 in f''. Between knots i and i + 1, with s =
+ * (x - x_i) / h,
  *
  *     f = c_0 + c_1 s + c_2 s^2 + c_3 s^3,   c_0 = f_i,   c_2 = h^2 m_i / 2,
- *     c_1 = f_i+1 - f_i - h^2 (2 m_i + m_i+1) / 6,   c_3 = h^2 (m_i+1 - m_i) / 6
+ *     c_1 = f_i+1 - f_i - h^2 (2 m_i + m_i+1) / 6,   c_3 = h^2 (m_i+1 - m_i) /
+ *     6
  */
 #include "simulate/swept.h"
 
@@ -22,13 +24,13 @@
 
 enum { POWERS = 4 };
 
-/* Knot k of F or of its second derivatives. */
+/* Values at knot k of A, which is F or its second derivatives. */
 static double *knot(const ritz_swept_model *m, const ritz_dense *A, int64_t k)
 {
     return ritz_dense_col(A, k * m->order);
 }
 
-/* to += factor from, of a knot's size. */
+/* to += factor from, for the values at a knot. */
 static void add_knot(int64_t size, double factor, const double *from,
                      double *to)
 {
@@ -70,7 +72,7 @@ ritz_status ritz_swept_bend(ritz_swept_model *m)
     return RITZ_OK;
 }
 
-/* The knot before x. */
+/* Number of the knot before x. */
 static int64_t find_piece(const ritz_swept_model *m, double x)
 {
     double k = floor((x - m->first) / m->spacing);
@@ -94,7 +96,7 @@ void ritz_swept_weights(const ritz_swept_model *m, int64_t at, double x,
     }
 }
 
-/* The polynomials between knots `at` and at + 1, rows x 4r. */
+/* The coefficients c_0 .. c_3 between knots `at` and at + 1, rows x 4r. */
 static ritz_status find_powers(const ritz_swept_model *m, int64_t at,
                                ritz_dense *out)
 {
@@ -129,7 +131,7 @@ ritz_status ritz_swept_values(const ritz_swept_model *m, double x,
     return RITZ_OK;
 }
 
-/* X'A X, of A {0} nothing. */
+/* X'A X; {0} if A is {0}. */
 static ritz_status project(const ritz_dense *A, const ritz_dense *X,
                            ritz_dense *out)
 {
