@@ -8,7 +8,7 @@
 
 enum { BY_PLACE, BY_RATE, BY_ACCELERATION, BY_STRAIN, WAYS };
 
-/* M or K of dof j by itself. */
+/* Diagonal entry j of M or K. */
 static double diagonal_at(ritz_model s, bool mass, int64_t j)
 {
     if (s.kind == RITZ_MODEL_COMPONENT)
@@ -84,7 +84,7 @@ static void note_states(ritz_reach *reach, const ritz_march *march)
     }
 }
 
-/* x'' as the quotient of two velocities: nothing of it at the start. */
+/* Norm of x'', from the difference of two velocities; 0 at the start. */
 static double acceleration_of(ritz_reach *reach, const ritz_march *march,
                               double seconds)
 {

@@ -1,26 +1,27 @@
 /*
- * A model in a frame whose rate W(t) changes: see ritz/spin.h. The implicit
- * midpoint rule, with <.> the mean over a step and means of x and v those of
- * both ends,
+ * A model in a frame whose rate W(t) changes: see ritz/spin.h. It is integrated
+ * by the implicit midpoint rule. With <.> the mean over a step, and x and v the
+ * means of their values at both ends,
  *
  *     M (v_1 - v_0) / h + (D + <W> G) v + (K + <W^2> H + <W'> G / 2) x
  *         = B u + <W^2> centrifugal + <W'> euler,    x_1 = x_0 + h v,
  *
- * H = S + KG, <W'> exact, <W> and <W^2> by Simpson's rule, exact where W is
- * linear. It is of second order, at corners of a profile within a step too,
- * since the impulse of Euler's force is exact. At a constant rate it is the
- * trapezoidal rule.
+ * where H = S + KG. <W'> is exact; <W> and <W^2> are found by Simpson's rule,
+ * which is exact where W is linear. The rule is of second order, even if a step
+ * contains a corner of a profile, because the impulse of Euler's force is
+ * exact. At a constant rate it is the trapezoidal rule.
  *
- * Its equations are those of the Lagrangian
+ * The equations are those of the Lagrangian
  *
  *     L = v'M v / 2 + W (-euler'v + v'G x / 2)
  *         + W^2 (J + 2 centrifugal'x - x'H x) / 2 - x'K x / 2
  *
- * with the angular momentum p = dL/dW about the axis. What holds the rate takes
- * the moment p', so that kinetic energy T = L + x'K x / 2, strain energy and
- * what D took change by the work of inputs and int W dp. Its integrals over a
- * step are h v'D v, (x_1 - x_0)'B u and <W> (p_1 - p_0): balance is of the order
- * of h^2.
+ * with the angular momentum p = dL/dW about the axis. A drive that imposes the
+ * rate exerts the moment p'. The sum of the kinetic energy T = L + x'K x / 2,
+ * the strain energy and the energy that D dissipates therefore changes by the
+ * work of inputs and int W dp. Over a step, dissipation is h v'D v, the work of
+ * inputs (x_1 - x_0)'B u and that of the drive <W> (p_1 - p_0): the error of
+ * the balance is of the order of h^2.
  */
 #include "simulate/motion.h"
 
@@ -35,13 +36,13 @@ typedef struct spun {
     const ritz_spin_rate *rate;
     const ritz_io *io;
     ritz_dense H;          /* {0}: none */
-    ritz_general_factor F; /* of the matrix at `mean` */
-    double mean[3];        /* <W>, <W^2>, <W'> of it */
+    ritz_general_factor F; /* of the matrix of a step with `mean` */
+    double mean[3];        /* <W>, <W^2> and <W'> of that matrix */
     bool factored;
-    ritz_general_factor mass; /* of M; made if outputs have accelerations */
+    ritz_general_factor mass; /* of M; only for outputs of acceleration */
     ritz_dense f;             /* n x 1, right side and then <v> */
-    double *g;                /* n, to work in */
-    double *memory;           /* work of what holds the rate */
+    double *g;                /* n, work space */
+    double *memory;           /* work of the drive */
 } spun;
 
 enum { RATE, ACCELERATION, ANGLE, SPIN_WORK, STIFFENING, NUM_DIAGNOSTICS };
@@ -70,7 +71,7 @@ static double time_of(const ritz_march *march)
     return (double)march->steps * march->step;
 }
 
-/* g += (K + W2 H + A G / 2) x; G {0} and H {0} add nothing. */
+/* g += sign (K + <W^2> H + <W'> G / 2) x, where G or H {0} is zero. */
 static void add_stiffness(const ritz_march *march, const double mean[3],
                           double sign, const double *x, double *g)
 {
@@ -121,7 +122,7 @@ static ritz_status factor_step(ritz_march *march, const double mean[3])
     return RITZ_OK;
 }
 
-/* Of a rate W. */
+/* p at a rate W. */
 static double angular_momentum(const ritz_march *march, double W)
 {
     const spun *s = march->own;
@@ -136,7 +137,7 @@ static double angular_momentum(const ritz_march *march, double W)
            ritz_motion_dot(n, e, march->v) + ritz_motion_dot(n, s->g, march->v);
 }
 
-/* What D took and inputs gave, <v> being in f. */
+/* Add the energy that D dissipates and the work of inputs; <v> is in f. */
 static void account_step(ritz_march *march, const double *u0, const double *u1)
 {
     const ritz_motion *m = march->motion;
@@ -150,7 +151,7 @@ static void account_step(ritz_march *march, const double *u0, const double *u1)
             ritz_motion_dot(m->n, ritz_dense_col(&m->B, j), s->f.val);
 }
 
-/* h/2 times the right side, from which <v> follows. */
+/* The right side of the equation for <v>. */
 static void load_step(const ritz_march *march, const double mean[3],
                       const double *u0, const double *u1)
 {
@@ -227,7 +228,7 @@ static void find_outputs(const ritz_march *march, const double *u, double *y)
     ritz_motion_gemv(&m->feed, 1.0, u, y);
     if (!s->mass.LU.val)
         return;
-    /* the motion has written x'' out at rest: what the spin adds to it */
+    /* the motion gives x'' without spin: add what the spin changes */
     memset(s->f.val, 0, (size_t)m->n * sizeof *s->f.val);
     add_loads(s, mean, m->n, s->f.val);
     ritz_motion_gemv(&s->H, -mean[1], march->x, s->f.val);
