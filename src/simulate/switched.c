@@ -1,18 +1,19 @@
 /*
- * A switched model over time. With U the present set in coordinates of the
- * library, orthonormal, and X the modes of U'K U,
+ * A switched model over time. Let the orthonormal columns of U be the present
+ * set in coordinates of the library, and X the modes of U'K U. Then
  *
- *     q = q_0 + U X p,   w = w_0 + U X p',   U'q_0 = U'w_0 = 0 held,
+ *     q = q_0 + U X p,   w = w_0 + U X p',
  *
  *     p'' + X'U'D U X p' + Lambda p = X'U'(B u - K q_0 - D w_0)
  *
- * which `modal` propagates exactly; the load of what is held is constant. Of
- * work and damping,
+ * where q_0 and w_0, with U'q_0 = U'w_0 = 0, are held constant from one switch
+ * to the next. They are a constant load, and `modal` propagates p exactly. In
+ * the balance of power
  *
  *     d/dt (w'w + q'K q)/2 = p''X'U'B u - p''X'U'D U X p' - p''X'U'D w_0,
  *
- * the inner model has the first two and the work of the load, whose integral
- * is its product with the change of p.
+ * the march of p accounts for the first two terms and for the work of the
+ * constant load, which is the load times the change of p.
  */
 #include "simulate/switched.h"
 
@@ -24,7 +25,7 @@
 #include <math.h>
 #include <string.h>
 
-/* What diagnostics tell, in their order, and the largest size of R so far. All
+/* Values of diagnostics, in their order, and the largest size of R so far. All
    are memory of the march. */
 enum {
     VECTORS,
@@ -59,11 +60,11 @@ static const char *const diagnostics[] = {
 /* The model of the present set. */
 typedef struct set_model {
     bool made;
-    ritz_motion motion; /* p; the last input is what is held */
+    ritz_motion motion; /* p; the last input is the constant load */
     ritz_march march;
-    int64_t *at;   /* of modes of a library that is orthonormal: their numbers,
-                    UX is then not needed; NULL */
-    ritz_dense UX; /* span x r */
+    int64_t *at; /* numbers of the vectors, if they are orthonormal modes; UX is
+                    then not needed. NULL: they are not */
+    ritz_dense UX;       /* span x r */
     double *damped_hold; /* r: X'U'D w_0 */
 } set_model;
 
@@ -71,15 +72,15 @@ typedef struct switching {
     const ritz_library *library;
     const ritz_switched *switched;
     const ritz_simulation_request *request;
-    int64_t steps_between, steps_kept; /* of interval and dwell */
+    int64_t steps_between, steps_kept; /* in interval and dwell */
     set_model set;
     ritz_choosing choosing;
     ritz_residue residue;
-    double *told, *q_0, *w_0, *p, *v; /* within memory */
+    double *told, *q_0, *w_0, *p, *v; /* parts of memory */
     double *memory;
     double *u0, *u1;      /* inputs and 1 */
-    double *ahead;        /* inputs that an interval ends with */
-    ritz_dense Ca;        /* outputs x n, of accelerations */
+    double *ahead;        /* inputs at the end of an interval */
+    ritz_dense Ca;        /* outputs x n: outputs of acceleration */
     double *acceleration; /* n */
 } switching;
 
@@ -104,7 +105,7 @@ static void release_switching(void *own)
               s->residue.ahead, s->acceleration, s);
 }
 
-/* out = X'U'y of the span's part of y. */
+/* out = X'U'y, for the part of y in the span of the library. */
 static void restrict_to_set(const set_model *set, const double *y, double *out)
 {
     const int64_t r = set->motion.n;
@@ -121,14 +122,14 @@ static void expand_set(const set_model *set, const double *x_0, const double *p,
 {
     if (set->at) {
         for (int64_t i = 0; i < set->motion.n; i++)
-            x[set->at[i]] = p[i]; /* x_0 is 0 there, and held elsewhere */
+            x[set->at[i]] = p[i]; /* x_0 is 0 here; other rows are held */
         return;
     }
     memcpy(x, x_0, (size_t)n * sizeof *x);
     ritz_motion_gemv(&set->UX, 1.0, p, x);
 }
 
-/* Whether a matrix of some vectors is diagonal. */
+/* Whether a matrix is diagonal. */
 static bool is_diagonal(const ritz_dense *A)
 {
     for (int64_t j = 0; j < A->ncol; j++)
@@ -138,7 +139,8 @@ static bool is_diagonal(const ritz_dense *A)
     return true;
 }
 
-/* Modes of a library are their own: `at`, Lambda and D by their numbers. */
+/* If the library consists of modes, those of the set are among them: fill `at`,
+   Lambda and D by their numbers. */
 static ritz_status take_modes(const switching *s, set_model *set, bool *taken)
 {
     const ritz_library *library = s->library;
@@ -186,7 +188,7 @@ static ritz_status find_modes(const switching *s, set_model *set)
     return ritz_dense_project(&part, &set->UX, &set->motion.D);
 }
 
-/* [X'U'B, -X'U'(K q_0 + D w_0)], and the damping of what is held. */
+/* [X'U'B, -X'U'(K q_0 + D w_0)], and X'U'D w_0. */
 static ritz_status fill_inputs(const switching *s, set_model *set)
 {
     const ritz_library *library = s->library;
@@ -211,8 +213,8 @@ static ritz_status fill_inputs(const switching *s, set_model *set)
     return RITZ_OK;
 }
 
-/* The model of the set that `present` names: its vectors, before what is held
-   is known. */
+/* The vectors and modes of the set `present`. The constant load is added by
+   finish_set, once q_0 and w_0 are known. */
 static ritz_status find_set(const switching *s, set_model *set)
 {
     bool taken = false;
@@ -236,7 +238,7 @@ static ritz_status finish_set(ritz_march *march, switching *s)
     return RITZ_OK;
 }
 
-/* y_0 = y - U X (X'U'y), X'U'y to be p. */
+/* p = X'U'y, and y_0 = y - U X p. */
 static void hold_rest(const set_model *set, int64_t n, const double *y,
                       double *y_0, double *p)
 {
@@ -252,7 +254,7 @@ static void hold_rest(const set_model *set, int64_t n, const double *y,
         y_0[set->at[i]] = 0.0;
 }
 
-/* What is held is lost: the jump, and what energy it takes. */
+/* Set q_0 and w_0 to zero; note the jump, and the change of energy. */
 static void project_state(ritz_march *march, switching *s)
 {
     const int64_t n = s->library->n;
@@ -284,7 +286,7 @@ static int64_t count_present(const switching *s)
     return count;
 }
 
-/* The set that was chosen becomes the present one. */
+/* Make the chosen set the present one. */
 static ritz_status change_set(ritz_march *march, switching *s)
 {
     const ritz_library *library = s->library;
@@ -316,8 +318,8 @@ static const double *look_ahead(const ritz_march *march, switching *s)
     return s->ahead;
 }
 
-/* Whether R at the start of a step, or where that is rounding, at its end,
-   tells anything. */
+/* Whether R at the start of a step is more than rounding; if it is not, R at
+   the end of the step is used. */
 static bool find_residue(const ritz_march *march, switching *s,
                          const double *u0, const double *u1)
 {
@@ -358,7 +360,7 @@ static ritz_status switch_set(ritz_march *march, switching *s, const double *u0,
     return change_set(march, s);
 }
 
-/* One step of the set, and what it gives and takes. */
+/* Advance the present set by a step, and add its work and dissipation. */
 static ritz_status advance_set(ritz_march *march, switching *s)
 {
     set_model *set = &s->set;
@@ -398,7 +400,7 @@ static ritz_status advance_switched(ritz_march *march, const double *u0,
     if (march->steps % s->steps_between == 0)
         RITZ_CHECK(switch_set(march, s, u0, u1));
     if (!s->set.made)
-        return RITZ_OK; /* nothing moves yet */
+        return RITZ_OK; /* R was zero so far: nothing moves */
     for (int64_t j = 0; j < m; j++) {
         s->u0[j] = u0[j];
         s->u1[j] = u1[j];
@@ -406,7 +408,7 @@ static ritz_status advance_switched(ritz_march *march, const double *u0,
     return advance_set(march, s);
 }
 
-/* Coordinates are orthonormal in M. */
+/* Kinetic energy is w'w / 2, as Phi'M Phi = I. */
 static void find_energy(const ritz_march *march, double *kinetic,
                         double *potential)
 {
@@ -423,7 +425,7 @@ static void diagnose(const ritz_march *march, double *out)
     memcpy(out, s->told, NUM_DIAGNOSTICS * sizeof *out);
 }
 
-/* Accelerations of the set: what is held has none. */
+/* Accelerations of the present set; q_0 and w_0 are constant. */
 static void find_acceleration(const switching *s, const double *u, double *a)
 {
     const set_model *set = &s->set;
@@ -458,7 +460,7 @@ static void find_outputs(const ritz_march *march, const double *u, double *y)
     ritz_motion_gemv(&s->Ca, 1.0, s->acceleration, y);
 }
 
-/* The library as a motion: its matrices, and what drives and observes them. */
+/* The library as a motion: its matrices, inputs and outputs. */
 static ritz_status fill_motion(const ritz_library *library, const ritz_io *io,
                                ritz_motion *m)
 {
@@ -476,7 +478,7 @@ static ritz_status fill_motion(const ritz_library *library, const ritz_io *io,
     return ritz_dense_new(io->num_outputs, io->num_inputs, &m->feed);
 }
 
-/* Numbers that the march names as its memory, and where they are. */
+/* Allocate the memory of the march, and find its parts. */
 static ritz_status make_memory(const ritz_library *library, switching *s,
                                ritz_march *march)
 {
@@ -529,7 +531,7 @@ static double largest_value(const ritz_signal *signal)
     return largest * fabs(signal->amplitude);
 }
 
-/* What R of the inputs can be: a residual far below it is rounding. */
+/* Bound of the part of R that inputs cause: an R far below it is rounding. */
 static double largest_force(const ritz_library *library,
                             const ritz_simulation_request *request)
 {
@@ -545,7 +547,7 @@ static double largest_force(const ritz_library *library,
     return sum;
 }
 
-/* Whole steps of a time; @p exact: it must be some. */
+/* Number of steps in a time, rounded up; if @p exact, it must be whole. */
 static ritz_status count_steps(double seconds, double step, bool exact,
                                int64_t *out)
 {
@@ -641,7 +643,7 @@ static void fill_report(const ritz_march *march, const ritz_library *library,
     report->outside = library->outside;
 }
 
-/* Names the run; its sets are propagated by `modal`. */
+/* It has the name of the run only: `modal` propagates the sets. */
 static const ritz_integrator switched_name = {.name = "switched"};
 
 ritz_status ritz_simulate_switched(ritz_model subject,
@@ -663,7 +665,7 @@ ritz_status ritz_simulate_switched(ritz_model subject,
     for (int64_t k = 0; k < switched->num_libraries; k++)
         found->num_given += switched->library[k].ncol;
     RITZ_CHECK(check_request(subject, request, switched));
-    asked.integrator = &ritz_integrator_trapezoidal; /* the full matrices */
+    asked.integrator = &ritz_integrator_trapezoidal; /* full matrices */
     RITZ_CHECK(ritz_motion_new(subject, &asked, &full));
     RITZ_CHECK(ritz_library_new(request, switched, &full, &library));
     found->num_vectors = library.num_vectors;

@@ -9,14 +9,14 @@
 
 /*
  * A library and the full model in its coordinates: x = Phi q, x' = Phi w,
- * Phi'M Phi = I. The first `span` columns span the candidates; those behind
- * them hold what of the initial state and of impulses lies beside, and never
- * move.
+ * Phi'M Phi = I. The first `span` columns span the candidates. Those after them
+ * span the parts of the initial state and of impulses that are orthogonal to
+ * the candidates, and never move.
  *
  *     R = [S_x w;  S_k q + S_d w + S_b u]
  *
  * are the coordinates of R in a basis that is orthonormal in W, so that |R| is
- * found without loss of digits.
+ * computed without loss of digits.
  */
 typedef struct ritz_library {
     int64_t num_vectors;  /* L, candidates */
@@ -26,10 +26,10 @@ typedef struct ritz_library {
                               diag(1 / scale), orthonormal in W */
     double *scale;        /* n: 1, or 1/sqrt(mu) where W = I */
     bool redundant;       /* else `vector` is the identity */
-    bool within;          /* |R|^2 is that of the library alone */
+    bool within;          /* |R|^2 is that of its part in the library */
     ritz_dense K, D, B;   /* Phi'K Phi, Phi'D Phi, Phi'B */
     ritz_dense S_x, S_k, S_d, S_b;
-    double outside; /* share of the initial state beside the library */
+    double outside; /* share of the initial state outside the library */
 } ritz_library;
 
 ritz_status ritz_library_new(const ritz_simulation_request *request,
@@ -47,34 +47,36 @@ ritz_status ritz_library_stable(const ritz_library *library,
                                 const ritz_switched *switched,
                                 ritz_switched_report *report);
 
-/* R at a switch, in the coordinates of a library; of looking ahead, of two R
-   that differ by their inputs. */
+/* R at a switch, in the coordinates of a library. With `ahead` these are two R,
+   with the inputs at the start and at the end of the interval. */
 typedef struct ritz_residue {
-    double *x, *v, *ahead; /* span: V'W of both rows, and of the second with
-                              the inputs ahead, else 0 */
-    double twice;          /* how often x counts */
-    double *whole;         /* rows of S_x: to work in */
-    double square;         /* |R|^2, or the sum of both */
-    double largest;        /* of the terms of R: what it is rounded by */
+    double *x, *v, *ahead; /* span: V'W of both rows of R, and of the second row
+                              with the inputs ahead, else 0 */
+    double twice;          /* how often x counts: 2 with inputs ahead, else 1 */
+    double *whole;         /* rows of S_x: work space */
+    double square;         /* |R|^2, or the sum of both R */
+    double largest;        /* size of terms of R, which bounds its rounding */
 } ritz_residue;
 
-/** @param[in] ahead  inputs ahead; NULL: one R */
+/** Compute R, or both R.
+ * @param[in] ahead  inputs at the end of the interval; NULL: one R */
 void ritz_residue_find(const ritz_library *library, const double *q,
                        const double *w, const double *u, const double *ahead,
                        ritz_residue *r);
 
-/* What is chosen, and what it takes to choose. */
+/* The choice of a set, with its work space. */
 typedef struct ritz_choosing {
     double *present; /* L: 1 in the set, else 0 */
     double *next;    /* L: the set that is chosen */
     double *share;   /* L */
-    ritz_dense rest; /* of redundant vectors, what is new in them */
+    ritz_dense rest; /* parts of redundant vectors that are orthogonal to those
+                        chosen */
     int64_t leading; /* number of the vector with the largest share, from 0 */
     double indicator;
-    bool fallback; /* all vectors are below Emin */
+    bool fallback; /* E of all vectors is below Emin */
 } ritz_choosing;
 
-/** Fill next, leading, indicator, fallback. */
+/** Choose the next set: fill next, leading, indicator and fallback. */
 void ritz_choose_vectors(const ritz_library *library,
                          const ritz_switched *switched, const ritz_residue *r,
                          ritz_choosing *c);
@@ -83,7 +85,7 @@ void ritz_choose_vectors(const ritz_library *library,
 double ritz_present_indicator(const ritz_library *library,
                               const ritz_residue *r, ritz_choosing *c);
 
-/** Orthonormal columns of span x r of the vectors in a set. */
+/** span x r: orthonormal columns that span the vectors of a set. */
 ritz_status ritz_library_columns(const ritz_library *library,
                                  const double *present, ritz_dense *U);
 

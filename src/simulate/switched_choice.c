@@ -1,13 +1,14 @@
 /*
- * Which vectors of a library carry the motion from a switch on: in the order of
- * their shares of |R|^2, until E > Emin [McDaniel2000, 5.2.12-14].
+ * The choice of a set at a switch: vectors are taken in the order of their
+ * shares of |R|^2, until E > Emin [McDaniel2000, 5.2.12-14].
  *
- * Of redundant candidates the share of each is that of what is new in it beside
- * those that were chosen before, so that shares add up to E.
+ * The share of a redundant candidate is that of its part which is orthogonal to
+ * the vectors chosen before it, so that shares add up to E.
  *
- * No decision hangs on rounding: shares that agree to twelve digits are a tie,
- * which goes to a vector of the present set, and among those to the lowest
- * number; E within rounding of Emin keeps a present vector and adds no other.
+ * No decision depends on rounding. Shares that agree to twelve digits are a
+ * tie: a vector of the present set is preferred, and then the lowest number. If
+ * E equals Emin within rounding, a vector of the present set is kept, and no
+ * other is added.
  */
 #include "simulate/switched.h"
 
@@ -16,7 +17,7 @@
 #include <math.h>
 #include <string.h>
 
-/* |A x|, A x being left in `whole`. */
+/* |A x|; A x is written to `whole`. */
 static double whole_size(const ritz_dense *A, const double *x, double *whole)
 {
     memset(whole, 0, (size_t)A->nrow * sizeof *whole);
@@ -40,7 +41,7 @@ static void find_force(const ritz_library *library, const double *q,
     }
 }
 
-/* |M^-1 (B u - K q - D w)|^2 in W, its terms being noted. */
+/* |M^-1 (B u - K q - D w)|^2 in W; the size of its terms is noted in r. */
 static double square_of_force(const ritz_library *library, const double *q,
                               const double *w, const double *u, ritz_residue *r)
 {
@@ -87,7 +88,7 @@ static double share_of(const ritz_residue *r, int64_t n, const double *psi,
     return (r->twice * x * x + v * v + ahead * ahead) / r->square;
 }
 
-/* Shares of all that are not chosen; 0 of what has nothing new. */
+/* Shares of all vectors; -1 if a redundant vector depends on those chosen. */
 static void find_shares(const ritz_library *library, const ritz_residue *r,
                         ritz_choosing *c)
 {
@@ -107,7 +108,7 @@ static void find_shares(const ritz_library *library, const ritz_residue *r,
     }
 }
 
-/* Take what is chosen out of all others. */
+/* Make all other vectors orthogonal to the chosen one. */
 static void deflate(const ritz_library *library, int64_t chosen,
                     ritz_choosing *c)
 {
@@ -127,7 +128,7 @@ static void deflate(const ritz_library *library, int64_t chosen,
         ritz_dense_col(&c->rest, chosen)[i] = 0.0;
 }
 
-/* The best of those that are left; -1: none is. */
+/* The vector that is taken next; -1: none is left. */
 static int64_t find_best(const ritz_library *library,
                          const ritz_switched *switched, const ritz_choosing *c)
 {
@@ -154,7 +155,7 @@ static int64_t find_best(const ritz_library *library,
     return best;
 }
 
-/* Whether E is enough, so that the next vector is not needed. */
+/* Whether E is large enough that the next vector is not needed. */
 static bool is_enough(const ritz_switched *switched, double E, bool present)
 {
     const double room = 1.0 - switched->least;

@@ -1,12 +1,12 @@
 /*
  * The library of a switched model, and the full model in its coordinates.
  *
- *     Phi = [library | beside],   Phi'M Phi = I
+ *     Phi = [library | rest],   Phi'M Phi = I
  *
- * `beside` holds what of the initial state and of impulses no vector of the
- * library moves. A library that is orthonormal in W = I has columns V with
- * M V = V diag(mu), for which the condition of stability asks; its columns of
- * Phi are V diag(mu)^(-1/2), which have the same projectors.
+ * The columns `rest` span the parts of the initial state and of impulses that
+ * are orthogonal to the library. A library that is orthonormal in W = I has
+ * columns V with M V = V diag(mu), as the condition of stability requires. Its
+ * columns of Phi are V diag(mu)^(-1/2), which have the same projectors.
  */
 #include "simulate/switched.h"
 
@@ -18,7 +18,7 @@
 #include <math.h>
 #include <string.h>
 
-/* All that a library is made of. */
+/* What a library is made of. */
 typedef struct library_work {
     const ritz_motion *full;
     const ritz_sparse *mass_matrix;
@@ -26,7 +26,7 @@ typedef struct library_work {
     ritz_sparse M;        /* the mass of a dense model */
     ritz_effective mass;
     ritz_dense V, WV; /* n x columns, orthonormal in W */
-    int64_t count;    /* of them */
+    int64_t count;    /* number of columns of V */
     double *work, *product;
 } library_work;
 
@@ -56,8 +56,9 @@ static void weigh(const library_work *b, const double *x, double *y)
 }
 
 /*
- * What a vector adds to V, by Gram-Schmidt, twice; what depends on V adds
- * nothing. x stays as it is but for its length, 1 in W.
+ * Append to V the part of x that is orthogonal to V, by Gram-Schmidt, which is
+ * done twice. A vector that depends on V adds nothing. x itself is only scaled
+ * to the length 1 in W.
  */
 static ritz_status append_vector(library_work *b, double *x, bool *taken)
 {
@@ -131,7 +132,7 @@ static ritz_status gather(const ritz_switched *switched,
     return RITZ_OK;
 }
 
-/* V, and the candidates in it. */
+/* V, and the coordinates of the candidates in it. */
 static ritz_status take_candidates(const ritz_switched *switched,
                                    ritz_dense *all, library_work *b,
                                    ritz_library *out)
@@ -158,7 +159,7 @@ static ritz_status take_candidates(const ritz_switched *switched,
     return RITZ_OK;
 }
 
-/* Initial values and impulses, as far as they lie beside the library. */
+/* Append the parts of initial values and impulses outside the library. */
 static ritz_status take_rest(const ritz_simulation_request *request,
                              library_work *b)
 {
@@ -184,7 +185,8 @@ static ritz_status take_rest(const ritz_simulation_request *request,
     return RITZ_OK;
 }
 
-/* M v = mu v of a column of V, which becomes v / sqrt(mu); else refuse. */
+/* Replace a column v of V, with M v = mu v, by v / sqrt(mu); refuse a column
+   that is no eigenvector of M. */
 static ritz_status scale_vector(library_work *b, int64_t k, double *scale)
 {
     const int64_t n = b->full->n;
@@ -211,7 +213,7 @@ static ritz_status scale_vector(library_work *b, int64_t k, double *scale)
     return RITZ_OK;
 }
 
-/* V becomes Phi, orthonormal in M whatever W is. */
+/* Replace V by Phi, which is orthonormal in M for both W. */
 static ritz_status scale_frame(library_work *b, ritz_library *out)
 {
     RITZ_CHECK_NEW(out->scale, b->V.ncol);
@@ -244,7 +246,7 @@ static ritz_status fill_terms(library_work *b, const ritz_library *library,
     return RITZ_OK;
 }
 
-/* Phi'K Phi and so on, of the products that `terms` holds before M^-1. */
+/* Phi'K Phi, Phi'D Phi and Phi'B, from `terms` before M^-1 is applied. */
 static ritz_status project_model(const ritz_dense *terms, ritz_library *out)
 {
     const int64_t n = out->n;
@@ -263,7 +265,7 @@ static ritz_status project_model(const ritz_dense *terms, ritz_library *out)
     return RITZ_OK;
 }
 
-/* The terms of R in an orthonormal basis of them all. */
+/* The terms of R in an orthonormal basis that spans all of them. */
 static ritz_status express_terms(const library_work *b, const ritz_sparse *W,
                                  ritz_dense *terms, ritz_library *out)
 {
@@ -279,8 +281,8 @@ static ritz_status express_terms(const library_work *b, const ritz_sparse *W,
     return ritz_dense_columns(&at, 3 * n, inputs, &out->S_b);
 }
 
-/* Of modes K and D are diagonal, but for their rounding, which would couple
-   them. */
+/* Remove rounding from K and D, which are diagonal for modes: it would couple
+   the modes. */
 static void drop_rounding(ritz_dense *A)
 {
     for (int64_t j = 0; j < A->ncol; j++)
@@ -294,7 +296,7 @@ static void drop_rounding(ritz_dense *A)
         }
 }
 
-/* Share of the initial state beside the library, by x and by v. */
+/* Share of the initial state outside the library: the larger of x and v. */
 static void find_outside(const ritz_simulation_request *request,
                          library_work *b, ritz_library *out)
 {

@@ -2,27 +2,29 @@
  * One Lyapunov function for all models that a library can give
  * [McDaniel2000, 5.2.24], V = (x'Kx + x''M x') / 2.
  *
- * Offset. With P the projector of a set, M P = P'M, and Z' = diag(P, P) A Z,
+ * Offset. With P the projector of a set, M P = P'M, and Z' = diag(P, P) A Z:
  *
  *     V' = x'K P v - v'P'(K x + D v) = -v'P'D v
  *
- * whatever P does to K. It is never positive if and only if P'D = D P: else a v
- * with P v = small -D_pq q and (1 - P) v = q has v'P'D v < 0. Every set of
- * vectors has it if and only if D psi = d M psi of each, d >= 0.
+ * for any K. V' is never positive if and only if P'D = D P: otherwise a v with
+ * P v = small -D_pq q and (1 - P) v = q has v'P'D v < 0. This holds for every
+ * set of vectors if and only if D psi = d M psi for each vector, d >= 0.
  *
- * Projection. Within an interval V' = -v'D v, as the state lies in the set; at
- * a switch x'P'K P x <= x'K x for all x if and only if P'K = K P, of every set
- * if and only if K psi = k M psi of each.
+ * Projection. Within an interval V' = -v'D v, as the state is in the span of
+ * the set. At a switch x'P'K P x <= x'K x for all x if and only if P'K = K P,
+ * and for every set if and only if K psi = k M psi for each vector.
  *
- * Where K fails that, and D is definite on the library (the least eigenvalue
- * delta of its pencil with M), projection is stable if sets dwell: of
+ * Where K does not meet this condition, and D is definite on the library (delta
+ * is the least eigenvalue of its pencil with M), projection is stable if each
+ * set is kept long enough. With
  *
  *     V_e = (v'M v + x'K x + e x'D x) / 2 + e x'M v,   0 < e < delta,
  *     V_e' = -v'(D - e M) v - e x'K x <= -2 a V_e
  *
- * hold in every subspace, and a projection raises V_e at most g times, g the
- * condition number of V_e in a norm in which projectors do not grow: a set that
- * stays for log(g) / 2a has lost what the switch gave. e is scanned.
+ * holds in every subspace. A projection multiplies V_e by at most g, the
+ * condition number of V_e in a norm in which projectors do not increase
+ * lengths: within log(g) / 2a a set dissipates what the switch added. Several e
+ * are tried.
  */
 #include "simulate/switched.h"
 
@@ -33,8 +35,8 @@
 #include <inttypes.h>
 #include <math.h>
 
-/* |A_S psi - a psi| of a candidate in W, and |A_S psi|; the Rayleigh quotient
-   a. S holds -M^-1 A Phi, S_x holds Phi. */
+/* |A_S psi - a psi| and |A_S psi| of a candidate in W, and its Rayleigh
+   quotient a. S has -M^-1 A Phi, S_x has Phi. */
 static void defect_of(const ritz_library *library, const ritz_dense *S,
                       int64_t k, double *work, double found[3])
 {
@@ -64,8 +66,8 @@ static void defect_of(const ritz_library *library, const ritz_dense *S,
     found[2] = a;
 }
 
-/* The largest defect over all candidates, relative to the largest |M^-1 A psi|;
-   which it is, and the least quotient, relative to that as well. */
+/* The largest defect over all candidates and its vector, and the least
+   quotient; defect and quotient are relative to the largest |M^-1 A psi|. */
 static ritz_status find_defect(const ritz_library *library, const ritz_dense *S,
                                double *defect, int64_t *which, double *least)
 {
@@ -93,7 +95,7 @@ static ritz_status find_defect(const ritz_library *library, const ritz_dense *S,
     return RITZ_OK;
 }
 
-/* The library's part of a matrix, symmetrised. */
+/* The part of a matrix in the span of the library, symmetrised. */
 static ritz_status take_span(const ritz_library *library, const ritz_dense *A,
                              ritz_dense *out)
 {
@@ -132,7 +134,7 @@ static ritz_status fill_form(const ritz_dense *A, double s, double b,
     return RITZ_OK;
 }
 
-/* The dwell that one e asks for; HUGE_VAL if V_e is no norm. */
+/* The dwell time that one e requires; HUGE_VAL if V_e is no norm. */
 static ritz_status dwell_of(const ritz_dense *K, const ritz_dense *D, double e,
                             double s, double *out)
 {
@@ -161,7 +163,7 @@ static ritz_status dwell_of(const ritz_dense *K, const ritz_dense *D, double e,
     return RITZ_OK;
 }
 
-/* The least over e, of delta / 2^k. */
+/* The shortest dwell time over e = delta / 2^k. */
 static ritz_status find_dwell(const ritz_library *library, double *out)
 {
     enum { SCANNED = 6 };
@@ -190,7 +192,7 @@ static ritz_status find_dwell(const ritz_library *library, double *out)
     return RITZ_OK;
 }
 
-/* The energy must be a norm, and D must not feed it. */
+/* The energy must not be negative, and D must not increase it. */
 static ritz_status check_definite(const ritz_library *library)
 {
     const ritz_dense *const matrix[] = {&library->K, &library->D};
