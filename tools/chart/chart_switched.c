@@ -1,5 +1,5 @@
-/* Switched models: the number of vectors over time, and below it the error
-   against the first run, which is that of the full model. */
+/* Chart of switched models: the number of vectors over time, and below it the
+   error relative to the first run, which is that of the full model. */
 #include "chart/chart.h"
 
 #include "base/alloc.h"
@@ -10,19 +10,19 @@
 
 enum {
     MOST_RUNS = 8,
-    MOST_POINTS = 600, /* points of a line; a page has hardly more pixels */
+    MOST_POINTS = 600, /* of a line; a page has few more pixels */
     WIDE = 700,
     HIGH = 440,
 };
 
-/* A run that is compared, and its error at each time. */
+/* A run, and its error at each time. */
 typedef struct run_errors {
     const char *name;
     const ritz_simulation *run;
-    int64_t vectors;    /* the diagnostic of that name; -1: as many as order */
-    double *error;      /* count: of all outputs the largest, relative to the
-                         largest value that each has */
-    double worst, mean; /* error; vectors */
+    int64_t vectors;    /* number of the diagnostic; -1: `order` at all times */
+    double *error;      /* count: largest error of all outputs, each relative
+                         to the largest value of its output */
+    double worst, mean; /* largest error; mean number of vectors */
 } run_errors;
 
 typedef struct switched_runs {
@@ -59,7 +59,7 @@ static ritz_status check_times(const chart_file *file,
                              full->num_outputs, full->output);
 }
 
-/* Errors of an output, to those that are larger so far. */
+/* Raise the errors to those of an output. */
 static void add_output(const ritz_simulation *full, int64_t i, run_errors *r)
 {
     const ritz_simulation *s = r->run;
@@ -99,7 +99,7 @@ static ritz_status take_run(const chart_file *file, const ritz_simulation *full,
     return RITZ_OK;
 }
 
-/* Of each few times the largest error and the vectors there. */
+/* Write the largest error of every few times, and the vectors there. */
 static void put_run(const run_errors *r, int64_t w, double floor_value,
                     picture *p)
 {
@@ -134,7 +134,7 @@ static void put_signs(const switched_runs *all, picture *p)
                          all->run[w].mean, all->run[w].worst);
 }
 
-/* Errors that are smaller than this of the largest are drawn there. */
+/* Smaller errors, relative to the largest, are drawn at this value. */
 static const double error_floor = 1e-8;
 
 static ritz_status draw_runs(const switched_runs *all,
