@@ -1,5 +1,5 @@
-/* What tools that close loops have in common: how signals are joined, and
-   whether the loop is stable. */
+/* What tools that close loops print: how signals are joined, and whether the
+   loop is stable. */
 #include "print/print.h"
 
 ritz_status loop_join(cli_run *run, const loop_options *given,

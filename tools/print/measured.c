@@ -1,7 +1,7 @@
 /* Measured responses as plants and controllers of ritz-frf. */
 #include "print/measured.h"
 
-/* Even points, where their number is not said. */
+/* Number of evenly spaced points, if it is not given. */
 static const int64_t usual_points = 400;
 
 bool measured_is(const model *m)

@@ -4,26 +4,26 @@
 
 #include "print/print.h"
 
-/** Whether what was read is a response and no model. */
+/** Whether a measured response was read, and not a model. */
 bool measured_is(const model *m);
 
 /** Inputs and outputs of a model or of a measured response; borrowed. */
 ritz_io measured_ends(const model *m);
 
-/** Read a container of one of some kinds, or a response as a container or as a
- * table of text. */
+/** Read a container whose kind is among @p wanted, or a response from a
+ * container or a text table. */
 ritz_status measured_read(cli_run *run, const char *path, int wanted,
                           model *out);
 
-/** Refuse what is asked of a model and cannot be asked of a measurement. */
+/** Refuse options of models, which a measured response does not have. */
 ritz_status measured_refuse(const response_options *given, const char *path);
 
 /**
- * Points of a measured plant or controller: those of the table, the plant's if
- * both are, within the band that is known; even ones in it if a number of points
- * is given.
+ * Frequencies of a loop with a measured plant or controller, within the band
+ * that was measured: those of its table, or of the plant's table if both are
+ * measured; evenly spaced ones if a number of points is given.
  *
- * @return RITZ_ERR_ARGUMENT outside what was measured
+ * @return RITZ_ERR_ARGUMENT if frequencies outside that band are requested
  */
 ritz_status measured_place(const response_options *given, const model *plant,
                            const model *controller, ritz_grid *out);

@@ -1,6 +1,6 @@
 /*
- * The parts of ritz-simulate: what is simulated, by which kind of run, and what
- * a second of it costs.
+ * The parts of ritz-simulate: the model and its inputs, the kinds of runs, and
+ * what a simulated second costs.
  */
 #ifndef RITZ_PRINT_SIMULATION_H
 #define RITZ_PRINT_SIMULATION_H
@@ -22,22 +22,22 @@ typedef struct simulation_task {
     ritz_signal *signal; /* of each input */
     double *x0, *v0;     /* of the subject; NULL: at rest */
     model controller;    /* of --controller */
-    ritz_loop loop;      /* of it with the subject */
-    bool told; /* what is said once of a loop was said: a run that is kept from
-                  time to time is carried out in parts */
-    ritz_accuracy reached; /* of a run whose step was chosen by it */
+    ritz_loop loop;      /* how it is joined to the subject */
+    bool told; /* stability of the loop was printed: a run with checkpoints has
+                  several parts, and it is printed once */
+    ritz_accuracy reached; /* of a run whose step --accuracy chose */
     int64_t num_libraries; /* of --switched */
     ritz_dense *library;
 } simulation_task;
 
-/** One run of a task: of one linear model, or of a kind. */
+/** A run of a task, of one linear model or of another kind. */
 typedef ritz_status simulation_function(simulation_task *task,
                                         const ritz_simulation_request *request,
                                         ritz_simulation *out);
 
-/* A run that is not that of one linear model. */
+/* A kind of run that is not that of one linear model. */
 typedef struct simulation_kind {
-    const char *option; /* that asks for it, "--switched" */
+    const char *option; /* the option that requests it, "--switched" */
     bool (*asked)(const simulation_options *given);
     simulation_function *simulate;
     /** Read the files that options name, once before all runs; NULL: none. */
@@ -62,12 +62,12 @@ void simulation_check_loop(const cli_program *program,
                            const simulation_options *given);
 
 /**
- * Carry out a run, keep what is done in the checkpoint, if there is one, from
- * time to time, and continue from a checkpoint that is there.
+ * Carry out a run. With --checkpoint, continue from the checkpoint if it
+ * exists, and write it from time to time.
  *
- * @return RITZ_ERR_CONVERGENCE after a signal: what was done is then the output,
- *         as OUTPUT.interrupted; RITZ_ERR_ARGUMENT if the checkpoint is of
- *         another command or of other files
+ * @return RITZ_ERR_CONVERGENCE after a signal, with the run until then in
+ *         OUTPUT.interrupted; RITZ_ERR_ARGUMENT if the checkpoint is of another
+ *         command or of other files
  */
 ritz_status simulation_long_run(simulation_task *task,
                                 ritz_simulation_request *request,
@@ -86,11 +86,11 @@ simulation_function simulation_spin;
 bool simulation_sweep_asked(const simulation_options *given);
 simulation_function simulation_sweep;
 
-/** Take the start of --sweep into --at, and its end for --seconds; refuse what
- * is no path. */
+/** Set --at to the start of the path of --sweep, and --seconds to its end;
+ * refuse a text that is no path. */
 ritz_status simulation_sweep_prepare(cli_run *run, simulation_options *given);
 
-/** Say what each integrator costs at the step that it needs. */
+/** Print what each integrator costs at the step that it needs. */
 ritz_status simulation_say_costs(simulation_task *d, const double band_hz[2]);
 
 /** The cost of a model, in the line of --record. */

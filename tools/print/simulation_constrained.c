@@ -1,4 +1,4 @@
-/* Bodies of a scene that are joined over time. */
+/* Runs in which the constraints between bodies of a scene are enforced. */
 #include "print/simulation.h"
 
 #include "base/alloc.h"
@@ -7,10 +7,10 @@
 #include <inttypes.h>
 #include <string.h>
 
-/* How many names of redundant rows are printed. */
+/* Number of redundant rows whose names are printed. */
 enum { MOST_NAMES = 6 };
 
-/* To so many digits, as a file has them. */
+/* Round values to some digits, as if they came from a file. */
 static void round_values(int64_t digits, int64_t n, double *x)
 {
     char text[64];
@@ -21,7 +21,7 @@ static void round_values(int64_t digits, int64_t n, double *x)
     }
 }
 
-/* q = P y of values of the system; NULL of none. */
+/* q = P y for values y of the system; NULL for NULL. */
 static ritz_status find_start(const simulation_options *given,
                               const ritz_unjoined *bodies, const double *y,
                               double **out)

@@ -1,4 +1,4 @@
-/* Closed loops in time: what is joined, what is known of its stability, and the
+/* Runs of closed loops: the joined signals, the stability of the loop, and the
    step. */
 #include "print/simulation.h"
 
@@ -23,7 +23,8 @@ void simulation_check_loop(const cli_program *program,
                             "give its --controller");
 }
 
-/* The step below which the split is stable, and what is said of this one. */
+/* Print the spectral radius at this step, and the step below which the split is
+   stable. */
 static void say_split(cli_run *run, bool sampled, const ritz_outlook *seen)
 {
     sink_field(run, sampled ? "one sample" : "one step", "spectral_radius",
@@ -61,7 +62,8 @@ static void warn_of_growth(cli_run *run, double step, const ritz_outlook *seen)
                  seen->radius);
 }
 
-/* Once for each run: what is known of the loop, and whether it is run. */
+/* Print the stability of the loop once for each run, and refuse an unstable
+   one. */
 static ritz_status examine(simulation_task *d,
                            const ritz_simulation_request *request,
                            const ritz_controlled *controlled)

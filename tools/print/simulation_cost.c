@@ -3,12 +3,12 @@
 
 #include "base/tolerances.h"
 
-/* Costs are told at explicit steps so far below their limit. */
+/* Explicit steps at which costs are measured, relative to their limit. */
 static const double margin = 0.95;
-/* Steps of the band over which costs are told, where no time is given. */
+/* Number of steps over which costs are measured, if no time is given. */
 static const double default_steps = 1000.0;
 
-/* Largest relative difference from the same by the modal integrator. */
+/* Largest relative difference from a run by the modal integrator. */
 static ritz_status measure_difference(ritz_model subject,
                                       ritz_simulation_request request,
                                       double *out)
@@ -36,7 +36,7 @@ static ritz_status say_integrator(cli_run *run, ritz_model subject,
     return RITZ_OK;
 }
 
-/* A simulator that makes and factors its mass matrix at each step. */
+/* Cost of a simulator that forms and factors its mass matrix at each step. */
 static ritz_status say_refactored(cli_run *run, const ritz_cost *cost)
 {
     double factor = 0.0, total = 0.0;
@@ -70,7 +70,7 @@ static void say_cost_head(const cli_run *run, const ritz_cost *cost)
             "error");
 }
 
-/* Where nothing is asked for: all inputs sweep from 0 Hz to the band's end. */
+/* If no input is given, all inputs sweep from 0 Hz to the end of the band. */
 static void sweep_inputs(const ritz_cost *cost, const double band_hz[2],
                          simulation_task *d)
 {
@@ -92,8 +92,8 @@ ritz_status simulation_record_cost(cli_run *run, ritz_model subject,
     return RITZ_OK;
 }
 
-/* All integrators at the step that each needs: cost of a second, and error
-   against modal. */
+/* Print the cost of a second and the error against modal, for each integrator
+   at the step that it needs. */
 ritz_status simulation_say_costs(simulation_task *d, const double band_hz[2])
 {
     cli_run *run = d->run;

@@ -1,5 +1,5 @@
-/* The table of runs that are not those of one linear model: a new one is a file
-   with its functions, and a row. */
+/* The table of runs that are not those of one linear model. A new one needs a
+   file with its functions, and a row here. */
 #include "print/simulation.h"
 
 const simulation_kind simulation_kinds[] = {

@@ -1,7 +1,7 @@
 /*
- * Long runs: a run is ended early, at a signal or to keep a checkpoint, and
- * what it has done is a time response with a state, from which the same command
- * continues it.
+ * Long runs. A run ends early at a signal, or to write a checkpoint. The result
+ * is a time response with a state, from which the same command continues the
+ * run.
  */
 #include "print/simulation.h"
 
@@ -10,19 +10,21 @@
 #include <string.h>
 #include <unistd.h>
 
-/* When a run ends early. */
+/* Decides when a run ends early. */
 typedef struct run_watch {
-    bool keeps;   /* checkpoints */
+    bool keeps;   /* it writes checkpoints */
     double began; /* by cli_clock: when the run was started or continued */
-    double next;  /* when it is to end; 0: it has not begun its steps */
+    double next;  /* when it is to end; 0: no step was taken yet */
 } run_watch;
 
 /* Seconds of work between two checkpoints. */
 static const double between = 30.0;
-/* Work takes so many times as long as keeping it and starting again. */
+/* Smallest ratio of the time of steps to the time of writing a checkpoint and
+   starting again. */
 static const double share = 20.0;
 
-/* Whether to end the run here. Its first call tells what a start costs. */
+/* Whether to end the run here. The time until the first call is that of
+   starting the run. */
 static bool is_due(void *context)
 {
     run_watch *w = context;
@@ -38,7 +40,7 @@ static bool is_due(void *context)
     return now >= w->next;
 }
 
-/* The command and the files of a checkpoint are those of this run. */
+/* Refuse a checkpoint of another command or of other files. */
 static ritz_status check_command(const cli_run *run, const char *path)
 {
     RITZ_OWN(ritz_summary) summary = {0};
@@ -102,7 +104,7 @@ static ritz_status write_checkpoint(cli_run *run, const char *path,
     return ritz_context(ritz_container_write_simulation(path, s, &stamp), path);
 }
 
-/* After a signal: what was done becomes OUTPUT.interrupted. */
+/* After a signal, write the run until then as OUTPUT.interrupted. */
 static ritz_status keep_rest(cli_run *run, const char *checkpoint,
                              const ritz_simulation_request *request,
                              const ritz_simulation *s)

@@ -1,4 +1,4 @@
-/* Runs whose rate of spin changes, as a scene says. */
+/* Runs of a scene whose rate of spin changes. */
 #include "print/simulation.h"
 
 bool simulation_spins(const simulation_task *task)

@@ -1,5 +1,5 @@
-/* ritz-simulate --sweep: a joint turns while the system vibrates, in one of
- * several bases, and what another basis makes of it. */
+/* ritz-simulate --sweep: a joint turns while the system vibrates. The run has
+   one of several bases, and may be compared with that of another one. */
 #include "print/simulation.h"
 
 #include "base/alloc.h"
@@ -10,12 +10,12 @@
 
 #include <inttypes.h>
 
-/* Which basis, and what is done with it. */
+/* A basis of --sweep-basis. */
 typedef struct sweep_basis {
     const char *name;
-    bool cut;   /* to some modes at each setting */
-    bool terms; /* of the change of the basis */
-    bool one;   /* the bodies of COMPARE's second stage */
+    bool cut;   /* it has some modes at each setting, not all */
+    bool terms; /* the rates of the basis are included */
+    bool one;   /* bodies are those of the second stage of COMPARE */
 } sweep_basis;
 
 static const sweep_basis bases[] = {
@@ -39,7 +39,7 @@ bool simulation_sweep_asked(const simulation_options *given)
     return given->sweep;
 }
 
-/* What is behind JOINT=. */
+/* Read the path after JOINT=. */
 static ritz_status parse_path(const char *text, ritz_path *out)
 {
     const char *equals = strchr(text, '=');
@@ -82,7 +82,7 @@ ritz_status simulation_sweep_prepare(cli_run *run, simulation_options *given)
     return RITZ_OK;
 }
 
-/* The range of a path of a sweep of the scene. */
+/* The sweep of the scene, and the range of its path. */
 static ritz_status ask_range(const simulation_task *d, const ritz_path *path,
                              ritz_sweep_request *out)
 {
@@ -101,7 +101,7 @@ static ritz_status ask_range(const simulation_task *d, const ritz_path *path,
     return RITZ_OK;
 }
 
-/* How many modes a cut basis has. */
+/* The number of modes of a cut basis. */
 static ritz_status ask_modes(const simulation_task *d, ritz_sweep_request *out)
 {
     const simulation_options *given = d->given;
@@ -148,8 +148,8 @@ static double fastest_rate(const ritz_swept_model *m, const ritz_path *path)
     return fastest;
 }
 
-/* Size of the model, how smooth it is, and how fast the joint moves. What is
-   compared with says it in text alone. */
+/* Print the size of the model, the error of its interpolation, and how fast the
+   joint moves; in the record only for the main run. */
 static void say_model(cli_run *run, bool main, const sweep_basis *basis,
                       const ritz_swept_model *m, const ritz_path *path)
 {
@@ -164,7 +164,8 @@ static void say_model(cli_run *run, bool main, const sweep_basis *basis,
                    fastest_rate(m, path) / (2.0 * RITZ_PI * m->start_hz[0]));
 }
 
-/* Largest difference of the mechanical energy, over its largest value. */
+/* Largest difference of the mechanical energy, relative to its largest
+   value. */
 static double compare_energies(const ritz_simulation *exact,
                                const ritz_simulation *other)
 {
@@ -192,7 +193,7 @@ static ritz_status run_basis(const simulation_task *d, bool main,
     return ritz_simulate_swept(&made, path, basis->terms, request, out);
 }
 
-/* The same run with the other basis, and how far they are apart. */
+/* Repeat the run with the other basis, and print how much they differ. */
 static ritz_status compare_bases(simulation_task *d, const ritz_path *path,
                                  const ritz_simulation_request *request,
                                  const ritz_simulation *s)
@@ -212,7 +213,8 @@ static ritz_status compare_bases(simulation_task *d, const ritz_path *path,
     return RITZ_OK;
 }
 
-/* Rigid motions, whose error does not shrink with a frequency. */
+/* Warn of rigid motions: they have no frequency compared with which the
+   rate of the joint is small. */
 static void warn_of_rigid(const simulation_task *d)
 {
     const int64_t count = d->m.system.configuration[0].num_rigid;

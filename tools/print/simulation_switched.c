@@ -17,7 +17,8 @@ bool simulation_switched_asked(const simulation_options *given)
     return given->switched != NULL;
 }
 
-/* "modes" or "modes:K": the lowest of the model itself; NULL: it is a file. */
+/* What follows "modes" in "modes" or "modes:K", the lowest modes of the model;
+   NULL for a file. */
 static const char *find_modes_word(const char *text)
 {
     static const char word[] = "modes";
@@ -58,7 +59,7 @@ static ritz_status take_modes(const simulation_task *task, const char *count,
         &pairs.Phi, 0, modes < pairs.Phi.ncol ? modes : pairs.Phi.ncol, out);
 }
 
-/* A basis that Ritz made, or a matrix in any foreign file. */
+/* Read a basis of Ritz, or a matrix from any foreign file. */
 static ritz_status read_library(cli_run *run, const char *path, ritz_dense *out)
 {
     RITZ_OWN(ritz_matrix) T = {0};

@@ -1,4 +1,4 @@
-/* What ritz-assemble and ritz-simulate say of a scene that spins. */
+/* What ritz-assemble and ritz-simulate print about a scene that spins. */
 #include "print/print.h"
 
 #include "base/tolerances.h"
@@ -6,10 +6,10 @@
 
 #include <math.h>
 
-/* Relative change of a frequency that is negligible. */
+/* A relative change of frequency up to this is negligible. */
 static const double negligible = 1e-3;
 
-/* What a spin model leaves out [PadillaVonFlotow1992]. */
+/* Warn of the terms that a spin model leaves out [PadillaVonFlotow1992]. */
 static void warn_of_model(cli_run *run, ritz_spin_model kept)
 {
     if (kept == RITZ_SPIN_INCONSISTENT)
@@ -23,7 +23,8 @@ static void warn_of_model(cli_run *run, ritz_spin_model kept)
                       "structure at rest");
 }
 
-/* A consistent model needs a KG for each product of rates. */
+/* Warn of bodies without KG: a consistent model needs one for each product of
+   rates. */
 static void warn_of_lacks(cli_run *run, const ritz_stage *stage,
                           const ritz_configuration *at)
 {
@@ -40,7 +41,7 @@ static void warn_of_lacks(cli_run *run, const ritz_stage *stage,
     }
 }
 
-/* Invariants may be approximate. */
+/* Warn of inertia invariants that are approximate. */
 static ritz_status warn_of_loss(cli_run *run, const ritz_stage *stage)
 {
     for (int64_t k = 0; k < stage->count; k++) {
@@ -107,7 +108,7 @@ ritz_status spin_say(cli_run *run, const ritz_stage *stage,
         return RITZ_OK;
     sink_set(run, "spin_rate,spin_model", "%.6g %s", most,
              ritz_spin_model_name(spin->model));
-    if (spin->rate.course != RITZ_SPIN_CONSTANT) /* else the system says so */
+    if (spin->rate.course != RITZ_SPIN_CONSTANT) /* else the system has it */
         cli_say(run, "  %-14s up to %.6g rad/s, %s", "spin", most,
                 ritz_spin_model_name(spin->model));
     warn_of_model(run, spin->model);
