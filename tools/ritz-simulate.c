@@ -46,7 +46,7 @@ static const cli_program program = {
     .threads = true,
 };
 
-/* What every run has. */
+/* Options of every run. */
 #define RUN_OPTIONS(it)                                                        \
     CLI_TEXT("method", &(it)->method, "NAME", "integrator, one of --list"),    \
         CLI_REAL("seconds", &(it)->seconds, "T", 1e-12, 1e12,                  \
@@ -57,8 +57,8 @@ static const cli_program program = {
                  "accept a step at which constraints or a split loop are not " \
                  "stable, to see it fail"),                                    \
         CLI_REAL("accuracy", &(it)->accuracy, "X", 1e-12, 1.0,                 \
-                 "halve the step until outputs are within X of their "         \
-                 "largest [1e-3]"),                                            \
+                 "halve the step until the error of outputs is below X of "    \
+                 "their largest value [1e-3]"),                                \
         CLI_LIST("input", &(it)->input, "NAME=SIGNAL",                         \
                  "step, impulse, sine:F or chirp:F,F, each with "              \
                  "*AMPLITUDE if not 1, or a file of times and values"),        \
@@ -73,13 +73,13 @@ static const cli_program program = {
         CLI_INT("every", &(it)->every, "N", 1, 1e9,                            \
                 "with --step, write every N-th step"),                         \
         CLI_REAL("up-to-hz", &(it)->up_to_hz, "F", 1e-9, 1e9,                  \
-                 "modes of a component up to here, for --method modal"),       \
+                 "with --method modal, highest mode of a component"),          \
         CLI_FLAG(                                                              \
             "coordinates", &(it)->coordinates,                                 \
             "store the coordinates of a reduced component or system too, "     \
             "for ritz-recover")
 
-/* A controller that is joined to the model. */
+/* A controller with which the model forms a closed loop. */
 #define LOOP_OPTIONS_IN_TIME(it)                                               \
     CLI_TEXT("controller", &(it)->loops.controller, "FILE",                    \
              "close a loop with this state space"),                            \
@@ -87,26 +87,23 @@ static const cli_program program = {
                  "join signals of plant and controller by these names"),       \
         CLI_WORD("feedback", &(it)->loops.feedback, "negative|positive",       \
                  "sign with which the loop is closed [negative]"),             \
-        CLI_WORD(                                                              \
-            "loop", &(it)->way, "split|exact",                                 \
-            "propagate plant and controller by turns, or together by one "     \
-            "exponential [split]"),                                            \
+        CLI_WORD("loop", &(it)->way, "split|exact",                            \
+                 "propagate plant and controller separately over a step, or "  \
+                 "together by one exponential [split]"),                       \
         CLI_REAL("sample", &(it)->sample, "T", 1e-12, 1e12,                    \
-                 "seconds between samples of the controller [it is "           \
-                 "continuous]"),                                               \
+                 "seconds between samples of the controller [continuous]"),    \
         CLI_REAL("delay", &(it)->delay, "T", 0.0, 1e12,                        \
                  "seconds from a sample until the controller acts [0]"),       \
-        CLI_FLAG(                                                              \
-            "discrete", &(it)->discrete,                                       \
-            "A and B of the controller lead from one sample to the next"),     \
+        CLI_FLAG("discrete", &(it)->discrete,                                  \
+                 "the controller is a discrete system, sample to sample"),     \
         CLI_FLAG("force", &(it)->loops.force,                                  \
-                 "also a loop that is unstable itself")
+                 "simulate a loop that is itself unstable")
 
-/* Joints of a scene that hold by forces. */
+/* Joints of a scene that are enforced during the run. */
 #define CONSTRAINT_OPTIONS(it)                                                 \
     CLI_TEXT("constraints", &(it)->constraints, "METHOD[:NAME=VALUE,...]",     \
-             "of a scene: joints hold by forces over time, not by "            \
-             "elimination; one of --list"),                                    \
+             "enforce the joints of a scene during the run instead of "        \
+             "eliminating them; one of --list"),                               \
         CLI_INT("start-digits", &(it)->start_digits, "N", 1, 17,               \
                 "with --constraints, round the bodies' initial values to N "   \
                 "digits, as a file has them")
@@ -114,50 +111,48 @@ static const cli_program program = {
 /* Reduced models that are switched in time. */
 #define SWITCHING_OPTIONS(it)                                                  \
     CLI_TEXT("switched", &(it)->switched, "LIBRARY[,LIBRARY]",                 \
-             "reduced models switched in time: bases, matrices of any "        \
-             "foreign file, or modes[:K]"),                                    \
+             "switch reduced models in time, with vectors of bases, of "       \
+             "matrices in any foreign file, or modes[:K]"),                    \
         CLI_REAL("switch-interval", &(it)->switch_interval, "T", 1e-12, 1e12,  \
-                 "seconds from one switch to the next, whole steps"),          \
+                 "seconds from switch to switch, a multiple of the step"),     \
         CLI_REAL("indicator", &(it)->indicator, "E", 1e-6, 1.0 - 1e-9,         \
                  "vectors are added until their share of the residual is "     \
                  "above E"),                                                   \
-        CLI_WORD(                                                              \
-            "share-of", &(it)->share_of, "model|library",                      \
-            "that share is of the whole residual, or of what the library "     \
-            "captures of it"),                                                 \
+        CLI_WORD("share-of", &(it)->share_of, "model|library",                 \
+                 "that share is of the whole residual, or of its part in the " \
+                 "library"),                                                   \
         CLI_FLAG(                                                              \
             "look-ahead", &(it)->look_ahead,                                   \
-            "take the inputs at the end of a switch interval into account "    \
+            "choose vectors for the inputs at the end of a switch interval "   \
             "too"),                                                            \
         CLI_WORD("inner", &(it)->inner, "mass|euclidean",                      \
-                 "product in which vectors are orthogonal and shares are "     \
-                 "measured"),                                                  \
-        CLI_WORD(                                                              \
-            "jump", &(it)->jump, "offset|project",                             \
-            "what lies beside the set at a switch stays as it was, or is "     \
-            "lost"),                                                           \
+                 "inner product in which vectors are orthogonal and "          \
+                 "shares are measured"),                                       \
+        CLI_WORD("jump", &(it)->jump, "offset|project",                        \
+                 "at a switch, keep the part of the state outside the set "    \
+                 "constant, or remove it"),                                    \
         CLI_REAL("hysteresis", &(it)->hysteresis, "H", 0.0, 0.99,              \
-                 "a vector that is used counts 1 + H times"),                  \
+                 "multiply shares of the present vectors by 1 + H"),           \
         CLI_REAL("dwell", &(it)->dwell, "T", 0.0, 1e12,                        \
-                 "seconds that a set is kept at least [one interval]"),        \
+                 "shortest time for which a set is kept, s [one interval]"),   \
         CLI_FLAG("redundant", &(it)->redundant,                                \
-                 "vectors of the library may depend on each other")
+                 "vectors of the library may be linearly dependent")
 
-/* A joint of a scene that moves. */
+/* A joint of a scene that moves during the run. */
 #define SWEEP_OPTIONS(it)                                                      \
     CLI_TEXT("sweep", &(it)->sweep, "JOINT=FROM:TO:TIME[s][:smooth]",          \
-             "turn a joint of a scene meanwhile, in degrees and seconds, "     \
-             "or as a file of times and settings says"),                       \
+             "turn a joint of a scene during the run, in degrees and "         \
+             "seconds, or as a file of times and settings says"),              \
         CLI_WORD("sweep-basis", &(it)->sweep_basis,                            \
                  "switched|without-terms|one|full",                            \
-                 "modes at each angle, with the terms of their change or "     \
-                 "without; one basis of COMPARE for all; all modes"),          \
+                 "modes at each setting, with the terms of their change or "   \
+                 "without; one basis of COMPARE for all; or all modes"),       \
         CLI_INT("sweep-modes", &(it)->sweep_modes, "N", 1, 1e6,                \
-                "modes at each angle [those up to --up-to-hz or in the "       \
+                "modes at each setting [those up to --up-to-hz or in the "     \
                 "scene's band]"),                                              \
         CLI_WORD("sweep-against", &(it)->sweep_against,                        \
                  "switched|without-terms|one|full",                            \
-                 "say how far the run is from that with another basis")
+                 "compare with the run in another basis")
 
 int main(int argc, char **argv)
 {
@@ -177,17 +172,17 @@ int main(int argc, char **argv)
         SWITCHING_OPTIONS(&given),
         SWEEP_OPTIONS(&given),
         CLI_TEXT("checkpoint", &given.checkpoint, "FILE",
-                 "keep what is done in FILE every half minute or so; the same "
+                 "write a checkpoint to FILE about every half minute; the same "
                  "command continues from it"),
         CLI_FLAG("cost", &given.cost,
                  "report what a simulated second costs, by each integrator"),
         CLI_PAIR("band-hz", given.band_hz, "F,F",
-                 "band that --cost resolves [a system's own; else all "
+                 "band that --cost resolves [that of a system; else all "
                  "frequencies]"),
         MODEL_OPTIONS(&given.model),
         CLI_ACTION("list", list_all,
-                   "list integrators and ways to hold constraints, with what "
-                   "they hold and where they fail"),
+                   "list integrators and methods for constraints, with their "
+                   "accuracy and where they fail"),
         {0},
     };
     cli_run run;
