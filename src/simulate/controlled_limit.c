@@ -203,15 +203,15 @@ static ritz_status refuse_step(double step, const ritz_outlook *seen)
 {
     RITZ_REFUSE_IF(
         seen->limit > 0.0, RITZ_ERR_ARGUMENT,
-        "a step of %g s makes the loop unstable, whose parts hold each other's "
-        "outputs: spectral radius %.8g; below %.5g s it is stable; take it all "
-        "the same with --any-step",
+        "a step of %g s makes the loop unstable, because each part holds the "
+        "output of the other: spectral radius %.8g; below %.5g s it is stable; "
+        "take it all the same with --any-step",
         step, seen->radius, seen->limit);
     return ritz_fail(
         RITZ_ERR_ARGUMENT,
-        "a step of %g s makes the loop unstable, whose parts hold each other's "
-        "outputs: spectral radius %.8g, and no step is found at which it is "
-        "stable; take it all the same with --any-step",
+        "a step of %g s makes the loop unstable, because each part holds the "
+        "output of the other: spectral radius %.8g, and no step is found at "
+        "which it is stable; take it all the same with --any-step",
         step, seen->radius);
 }
 
@@ -237,8 +237,8 @@ ritz_status ritz_controlled_refuse(const ritz_simulation_request *request,
     RITZ_REFUSE_IF(controlled->sample > 0.0 && outlook->grows &&
                        !controlled->force,
                    RITZ_ERR_ARGUMENT,
-                   "the sampled loop is unstable, %.8g times more from one "
-                   "sample to the next; simulate it all the same with --force",
+                   "the sampled loop is unstable, %.8g times larger after each "
+                   "sample; simulate it all the same with --force",
                    outlook->radius);
     if (controlled->sample > 0.0 || unstable || !outlook->grows ||
         controlled->any_step)

@@ -85,7 +85,7 @@ ritz_status ritz_controlled_check(ritz_model subject,
         request->integrator->name);
     RITZ_REFUSE_IF(controlled->exact && (sampled || controlled->delay > 0.0),
                    RITZ_ERR_ARGUMENT,
-                   "one exponential is of a continuous controller without a "
+                   "one exponential needs a continuous controller without a "
                    "delay");
     RITZ_REFUSE_IF(controlled->discrete && !sampled, RITZ_ERR_ARGUMENT,
                    "a discrete controller needs the time between two samples");

@@ -33,12 +33,12 @@ static void say_split(cli_run *run, bool sampled, const ritz_outlook *seen)
     if (isnan(seen->limit))
         return;
     if (isinf(seen->limit))
-        cli_say(run, "stable as it is split: at all steps up to the whole run");
+        cli_say(run, "the split is stable at all steps up to the whole run");
     else if (seen->limit > 0.0)
         sink_field(run, "stable below", "step_limit", "a step of %.5g s",
                    seen->limit);
     else
-        cli_say(run, "stable as it is split: at no step that was tried");
+        cli_say(run, "the split is stable at no step that was tried");
 }
 
 static void warn_of_growth(cli_run *run, double step, const ritz_outlook *seen)
@@ -75,8 +75,8 @@ static ritz_status examine(simulation_task *d,
     if (seen.known)
         loop_say_stability(run, &seen.loop);
     else if (!(controlled->sample > 0.0))
-        cli_say(run, "the loop itself: its poles are not known, as the plant "
-                     "is too large or the controller acts late");
+        cli_say(run, "the poles of the loop are not known, because the plant "
+                     "is too large or the controller has a delay");
     if (!controlled->exact)
         say_split(run, controlled->sample > 0.0, &seen);
     RITZ_CHECK(ritz_controlled_refuse(request, controlled, &seen));
