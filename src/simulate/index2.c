@@ -194,7 +194,7 @@ const ritz_stabilisation ritz_stabilisation_index_2 = {
     .needs = "nothing",
     .stability = "any step",
     .frequency = "stays",
-    .fails = "takes energy from what the step does not resolve",
+    .fails = "dissipates energy of motions that the step does not resolve",
     .reference = "ArnoldBruls2007",
     .terms = find_terms,
 };

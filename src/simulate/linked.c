@@ -27,15 +27,14 @@ static ritz_status check_sizes(const ritz_unjoined *b)
     RITZ_REFUSE_IF(
         b->K.nrow != n || b->K.ncol != n || b->M.nrow != n || b->M.ncol != n ||
             (b->D.val && (b->D.nrow != n || b->D.ncol != n)),
-        RITZ_ERR_ARGUMENT,
-        "K, M and D of %" PRId64 " coordinates are as many squared", n);
+        RITZ_ERR_ARGUMENT, "K, M and D must be square, of order %" PRId64, n);
     RITZ_REFUSE_IF(b->C.nrow != b->num_rows || (b->C.val && b->C.ncol != n),
                    RITZ_ERR_ARGUMENT,
                    "constraints are %" PRId64 " rows of %" PRId64
                    " coordinates, not %" PRId64 " of %" PRId64,
                    b->num_rows, n, b->C.nrow, b->C.ncol);
     RITZ_REFUSE_IF(b->io.B.nrow != n || b->io.C.ncol != n, RITZ_ERR_ARGUMENT,
-                   "inputs and outputs are of %" PRId64 " coordinates", n);
+                   "inputs and outputs must have %" PRId64 " coordinates", n);
     for (int64_t k = 0; b->C.val && k < b->C.nrow * b->C.ncol; k++)
         RITZ_REFUSE_IF(!isfinite(b->C.val[k]), RITZ_ERR_ARGUMENT,
                        "a constraint has a coefficient that is not finite");

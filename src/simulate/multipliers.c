@@ -35,8 +35,8 @@ const ritz_stabilisation ritz_stabilisation_none = {
     .needs = "a start that satisfies the constraints to all digits",
     .stability = "that of the integrator",
     .frequency = "stays",
-    .fails = "a violation of the start stays, that of its velocity grows with "
-             "time; rounding adds to both",
+    .fails = "a violation at the start stays, and one of its velocity grows "
+             "with time; rounding adds to both",
     .reference = "McDaniel2000",
     .integrator = &ritz_integrator_trapezoidal,
     .terms = find_none,
@@ -63,9 +63,8 @@ const ritz_stabilisation ritz_stabilisation_baumgarte = {
     .needs = "two parameters that fit the step",
     .stability = "explicit: step below 2 / beta; implicit: any",
     .frequency = "raised to beta if that is higher",
-    .fails =
-        "a violation of the start takes some 1 / beta to fade; forces that "
-        "end it do work",
+    .fails = "a violation at the start takes about 1 / beta to decay, and the "
+             "forces that remove it do work",
     .reference = "Baumgarte1972",
     .gain = {{"alpha", "1/s", "damping of violations [that of 1 / step]"},
              {"beta", "1/s", "frequency of violations [1 / step]"}},

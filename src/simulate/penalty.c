@@ -53,8 +53,8 @@ const ritz_stabilisation ritz_stabilisation_penalty = {
     .needs = "a frequency well above all that matter",
     .stability = "explicit: step below 2 / highest; implicit: any",
     .frequency = "raised to that of the springs, or above",
-    .fails = "springs that the step does not resolve ring; violations stay "
-             "under load",
+    .fails = "springs that the step does not resolve oscillate; violations "
+             "stay under load",
     .reference = "McDaniel2000",
     .gain = {{"hz", "Hz", "frequency of the springs [1 / step in rad/s]"},
              {"ratio", "", "damping ratio of violations [1]"},
@@ -114,7 +114,8 @@ const ritz_stabilisation ritz_stabilisation_hybrid = {
              "equation",
     .reference = "McDaniel2000",
     .gain = {{"hz", "Hz", "frequency of the springs [1 / step in rad/s]"},
-             {"surface", "1/s", "c in the coefficient [1, as in the paper]"},
+             {"surface", "1/s",
+              "weight of c in the coefficient [1, as in the paper]"},
              {"smax", "of c",
               "the coefficient is 1/s where |c' + surface c| "
               "is smax/s [critical at the largest force that "

@@ -291,7 +291,7 @@ static ritz_status check_request(ritz_model subject,
                                  const ritz_simulation_request *request)
 {
     RITZ_REFUSE_IF(subject.kind != RITZ_MODEL_DENSE, RITZ_ERR_ARGUMENT,
-                   "a spin is of reduced components and systems");
+                   "a spin needs a reduced component or a system");
     RITZ_REFUSE_IF(request->integrator != &ritz_integrator_trapezoidal,
                    RITZ_ERR_ARGUMENT,
                    "matrices of a rate that changes are integrated by "
@@ -319,7 +319,7 @@ ritz_status ritz_simulate_spun(ritz_model subject, const ritz_spin_terms *terms,
     RITZ_CHECK(check_request(subject, terms, request));
     RITZ_CHECK(ritz_motion_dense(subject, false, &motion));
     RITZ_REFUSE_IF(motion.to.val, RITZ_ERR_ARGUMENT,
-                   "a motion has no mass, which a spin does not take");
+                   "a motion has no mass, as all need in a model that spins");
     motion.energies = true;
     RITZ_CHECK(start_spun(terms, rate, subject.dense.io, &motion, &march));
     RITZ_CHECK(ritz_march_run(&march, request, NULL, &s));

@@ -612,8 +612,8 @@ static ritz_status check_request(ritz_model subject,
                        subject.damping->kind != RITZ_DAMPING_NONE &&
                        !ritz_damping_is_rayleigh(subject.damping),
                    RITZ_ERR_ARGUMENT,
-                   "damping ratios of a component are of modes that are not "
-                   "known: give rayleigh damping, or reduce it by 'full' "
+                   "damping ratios of a component need its modes, which are "
+                   "not known: give rayleigh damping, or reduce it by 'full' "
                    "first");
     RITZ_REFUSE_IF(request->coordinates, RITZ_ERR_ARGUMENT,
                    "coordinates of a switched model are not stored");

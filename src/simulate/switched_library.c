@@ -327,13 +327,13 @@ static ritz_status begin_work(const ritz_switched *switched,
                               library_work *b)
 {
     b->full = full;
-    RITZ_REFUSE_IF(full->to.val, RITZ_ERR_SINGULAR,
-                   "there are motions without mass, of which none can be "
-                   "switched: condense them first");
+    RITZ_REFUSE_IF(
+        full->to.val, RITZ_ERR_SINGULAR,
+        "motions without mass cannot be switched: condense them first");
     for (int64_t k = 0; full->massless && k < full->n; k++)
-        RITZ_REFUSE_IF(full->massless[k], RITZ_ERR_SINGULAR,
-                       "there are dofs without mass, of which none can be "
-                       "switched: condense them first");
+        RITZ_REFUSE_IF(
+            full->massless[k], RITZ_ERR_SINGULAR,
+            "dofs without mass cannot be switched: condense them first");
     RITZ_CHECK_IN("M",
                   ritz_effective_new(full, 1.0, 0.0, 0.0, false, &b->mass));
     if (full->form != RITZ_FORM_SPARSE)

@@ -206,8 +206,8 @@ static ritz_status check_definite(const ritz_library *library)
         RITZ_CHECK(find_ends(&A, ends));
         RITZ_REFUSE_IF(ends[0] < -RITZ_COMMUTES * fabs(ends[1]),
                        RITZ_ERR_ARGUMENT,
-                       "%s has the negative value %.3g on the library: its "
-                       "energy bounds no motion",
+                       "%s has the negative value %.3g on the library: the "
+                       "energy does not bound the motion",
                        name[k], ends[0]);
     }
     return RITZ_OK;

@@ -63,8 +63,8 @@ static void say_cost_head(const cli_run *run, const ritz_cost *cost)
             "old)",
             cost->step_explicit);
     cli_say(run,
-            "periods at the band's end come out right to 1e-3 up to "
-            "%.4g s (trapezoidal)\n",
+            "periods at the band's end are accurate to 1e-3 up to %.4g s "
+            "(trapezoidal)\n",
             cost->step_accurate);
     cli_say(run, "%-20s %12s %14s %12s", "integrator", "step, s", "s a second",
             "error");

@@ -142,7 +142,7 @@ static void say_report(cli_run *run, const ritz_switched *asked,
                    r->defect);
     if (r->outside > 0.0)
         cli_warn(run,
-                 "%.2g of the initial state lies beside the library, and is "
+                 "%.2g of the initial state is outside the library, and is "
                  "lost",
                  r->outside);
 }
