@@ -99,11 +99,11 @@ ritz_status ritz_stage_assemble(const ritz_stage *stage, const double *setting,
                                 ritz_configuration *out);
 
 /**
- * The bodies at some settings without what joins them, for
- * ritz_simulate_constrained().
+ * The bodies of a stage at some settings before they are joined, with their
+ * constraints, for ritz_simulate_constrained().
  *
  * @param[in] joined   the system at these settings
- * @param[in] damping  stated, of the system; NULL: none. A violation has none
+ * @param[in] damping  stated for the system; NULL: none. Violations have none
  * @return RITZ_ERR_ARGUMENT if a body has force columns or structural damping
  */
 ritz_status ritz_stage_unjoined(const ritz_stage *stage, const double *setting,
@@ -117,13 +117,13 @@ ritz_status ritz_stage_unjoined(const ritz_stage *stage, const double *setting,
 ritz_status ritz_assemble(const ritz_stage *stage, const char *at,
                           ritz_system *out);
 
-/** The input that a system of a scene with a constant spin has in addition: at
- * 1 it is the centrifugal load. */
+/** Additional input of a system with a constant spin: the value 1 is the
+ * centrifugal load. */
 #define RITZ_SPIN_INPUT "centrifugal"
 
 /**
- * Terms of the spin of a scene, as its spin model keeps them, in the coordinates
- * of a system of the stage.
+ * Spin terms of a scene, those that its spin model keeps, in the coordinates of
+ * a system of the stage.
  *
  * @return RITZ_ERR_ARGUMENT if there is no spin, a body has no inertia
  *         invariants, a load is missing, or a stiffening is of another origin
@@ -131,16 +131,17 @@ ritz_status ritz_assemble(const ritz_stage *stage, const char *at,
 ritz_status ritz_stage_spin(const ritz_stage *stage,
                             const ritz_configuration *at, ritz_spin_terms *out);
 
-/** The first stiffening that body @p k of a scene that spins needs and has not;
- * RITZ_NUM_STIFFENINGS: none. */
+/** The first stiffening that body @p k of a scene that spins needs and does not
+ * name; RITZ_NUM_STIFFENINGS if it names all. */
 int ritz_stage_spin_lacks(const ritz_stage *stage, const ritz_configuration *at,
                           int64_t k);
 
 /**
- * Rates that limit the model of a scene that spins: that at which the stiffness
- * of its spin model is not definite any more, NaN where bodies are free; and
- * that below which leaving out stiffening changes no frequency up to the end of
- * the band (of all modes without one) by more than @p error.
+ * Rates that limit the model of a scene that spins. `stable` is the rate at
+ * which the stiffness of its spin model stops being definite; NaN if bodies are
+ * free. `negligible` is the rate below which leaving out stiffening changes no
+ * frequency up to the end of the band (of all modes if there is no band) by
+ * more than @p error.
  *
  * @return RITZ_ERR_ARGUMENT as ritz_stage_spin
  */

@@ -37,17 +37,17 @@ typedef struct ritz_audit {
 ritz_status ritz_audit_component(const ritz_component *component,
                                  ritz_audit *out);
 
-/* A load that acts, in units of the load that its KG is of. */
+/* A load that acts, and its size in units of the load that its KG is for. */
 typedef struct ritz_applied {
     char name[RITZ_NAME_SIZE];
     double amount;
 } ritz_applied;
 
 /**
- * As ritz_audit_component, and whether the model is far enough from buckling
- * under the sum of these loads.
+ * As ritz_audit_component, with a check that the model is far enough from
+ * buckling under the sum of these loads.
  *
- * @return RITZ_ERR_ARGUMENT if the model has no load of a name
+ * @return RITZ_ERR_ARGUMENT if the model has no load of such a name
  */
 ritz_status ritz_audit_component_under(const ritz_component *component,
                                        int64_t count,
@@ -58,7 +58,7 @@ ritz_status ritz_audit_reduced_under(const ritz_reduced *reduced, int64_t count,
                                      ritz_audit *out);
 
 /*
- * By what a load must be multiplied for the model to buckle,
+ * Factors by which a load must be multiplied for the model to buckle,
  *
  *     K phi = -mu KG phi,
  *
@@ -67,18 +67,18 @@ ritz_status ritz_audit_reduced_under(const ritz_reduced *reduced, int64_t count,
  */
 typedef struct ritz_buckling {
     double factor;   /* lowest positive mu */
-    double reversed; /* negative mu nearest to 0. NaN, either: there is none up
-                        to 1000 times the other one */
+    double reversed; /* negative mu nearest to 0. Either one is NaN if there is
+                        none up to 1000 times the other one */
 } ritz_buckling;
 
 /**
  * Buckling factors of each load of a model.
  *
- * @param[out] out  as many as the model has loads, to be freed; NULL if there is
- *                  none, or if K leaves a motion free, which has no factors
+ * @param[out] out  one for each load, to be freed; NULL if there is no load, or
+ *                  if K leaves a motion free, for which there are no factors
  * @return RITZ_ERR_CONVERGENCE
- * @cost   of a component above 600 dofs a factor, some twenty solves and counts
- *         of negative eigenvalues for each load; else O(n^3)
+ * @cost   for a component above 600 dofs one factor, and about twenty solves
+ *         and counts of negative eigenvalues for each load; else O(n^3)
  */
 ritz_status ritz_buckling_of_component(const ritz_component *component,
                                        ritz_buckling **out);

@@ -196,25 +196,26 @@ ritz_status ritz_responder_follow(ritz_responder *responder,
 void ritz_responder_free(ritz_responder **responder);
 
 /**
- * A measured response as something that responds, interpolated between its
- * points by ritz_response_at and refused beyond them. It has no states, so that
- * nothing is known of the stability of a loop around it.
+ * A measured response as a responder. Between its points it is interpolated by
+ * ritz_response_at; frequencies outside their range are refused. It has no
+ * states, so that the stability of a loop around it is not known.
  *
  * @param[in] response  borrowed; at least two points
  */
 ritz_status ritz_measured_responder(const ritz_response *response,
                                     ritz_responder **out);
 
-/** Its inputs and outputs, by name alone; borrowed. */
+/** Inputs and outputs of a response, names only; borrowed. */
 ritz_io ritz_response_io(const ritz_response *response);
 
 /**
  * Read a table of text: hertz, and for each channel real and imaginary part, or
- * magnitude and degrees, as the head says; three columns without a head are
- * hertz, real and imaginary part from u1 to y1. ritz-export --to tsv writes one.
+ * magnitude and degrees, as its header line says; three columns without a
+ * header are hertz, real and imaginary part from u1 to y1. ritz-export --to tsv
+ * writes such a table.
  *
  * @return RITZ_ERR_FILE; RITZ_ERR_FORMAT with the line, if frequencies do not
- *         ascend, a channel is missing or there twice, or a row is no row of
+ *         ascend, a channel is missing or occurs twice, or a row is no row of
  *         finite numbers
  */
 ritz_status ritz_response_read_table(const char *path, ritz_response *out);

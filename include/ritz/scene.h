@@ -21,7 +21,7 @@ typedef enum ritz_stiffening {
     RITZ_STIFFENING_XY, /* for w_x w_y, ... */
     RITZ_STIFFENING_YZ,
     RITZ_STIFFENING_XZ,
-    RITZ_STIFFENING_TIP, /* for a unit of tension by what is outboard */
+    RITZ_STIFFENING_TIP, /* for a unit of tension by outboard bodies */
     RITZ_NUM_STIFFENINGS,
 } ritz_stiffening;
 

@@ -134,14 +134,14 @@ typedef struct ritz_simulation {
     double *y; /* y[k * num_outputs + i] */
     double *kinetic, *potential, *dissipated, *work, *balance; /* count, or
                                                                   all NULL */
-    int64_t num_diagnostics; /* values of the run itself, such as the violation
-                                of constraints */
+    int64_t num_diagnostics; /* values of the method, such as the violation of
+                                constraints */
     char (*diagnostic)[RITZ_NAME_SIZE]; /* their names */
     double *diagnosis;                  /* diagnosis[k * num_diagnostics + j] */
     int64_t num_coordinates; /* of the model; 0: they are not stored */
     double *q, *v, *a;       /* q, q' and q'': q[k * num_coordinates + j] */
     int64_t num_state;       /* 0: the run came to its end */
-    double *state;           /* what it is continued from */
+    double *state;           /* from which the run is continued */
     char integrator[RITZ_NAME_SIZE];
     char hold[RITZ_NAME_SIZE]; /* "first", "zero" */
     double step;
@@ -168,7 +168,7 @@ typedef struct ritz_simulation {
  * @return RITZ_ERR_ARGUMENT if the step is beyond an explicit integrator's
  *         limit (which it names), if there is structural damping, if a motion
  *         without mass is damped, if request->from is not of this model and
- *         request, or the request makes no sense;
+ *         request, or if the request is contradictory;
  *         RITZ_ERR_CONVERGENCE if the motion leaves all bounds
  * @cost   modal: O(r^3) once and O(r) a step, O(r^2) if D couples modes;
  *         the others O(r^3) once and O(r^2) a step; of a full component one
@@ -204,8 +204,8 @@ typedef struct ritz_accuracy {
  * continued.
  *
  * @param[out] reached  may be NULL
- * @return RITZ_ERR_CONVERGENCE if request->stop ends the search, or if no step with which there are 2^23 of them,
- *         and 2^28 values, reaches it
+ * @return RITZ_ERR_CONVERGENCE if request->stop ends the search, or if the
+ *         accuracy is not reached with 2^23 steps and 2^28 values
  */
 ritz_status ritz_simulate_accurate(ritz_model subject,
                                    const ritz_simulation_request *request,
@@ -216,8 +216,8 @@ ritz_status ritz_simulate_accurate(ritz_model subject,
  * Simulate a model in a frame that turns at a rate which may change, from a
  * start in that frame: x0, v0, displacements, velocities and accelerations are
  * relative to it. Diagnostics are the rate, its derivative, the angle, the work
- * of what holds the rate (in `work` too), and the energy of stiffening, W^2 x'KG
- * x / 2.
+ * of the drive that imposes the rate (`work` includes it), and the energy of
+ * stiffening, W^2 x'KG x / 2.
  * Kinetic energy is that in the frame at rest, with that of the spin itself.
  *
  * @param[in] terms  in the coordinates of the model

@@ -268,8 +268,8 @@ ritz_status ritz_stage_assemble_some(const ritz_stage *stage, int64_t count,
 
 /* A system over all configurations of a scene. */
 
-/* "consistent, 2 rad/s about (0 0 1) through (0 0 0)"; of a rate that changes
-   nothing, since the system is at rest. */
+/* "consistent, 2 rad/s about (0 0 1) through (0 0 0)"; "" for a rate that
+   changes, because the system is then that at rest. */
 static void describe_spin(const ritz_scene_spin *spin,
                           char out[4 * RITZ_NAME_SIZE])
 {

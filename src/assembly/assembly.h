@@ -199,7 +199,8 @@ ritz_status ritz_stage_spun(const ritz_stage *stage, const double *setting,
                             ritz_spun *out);
 void ritz_spun_free(ritz_spun *spun);
 
-/** RITZ_ERR_ARGUMENT if the scene spins; for methods that know no spin. */
+/** Refuse a scene that spins, for methods without spin. @return
+ * RITZ_ERR_ARGUMENT if it spins */
 ritz_status ritz_spin_refuse(const ritz_scene *scene);
 
 /*
@@ -217,7 +218,7 @@ typedef struct ritz_springs {
 ritz_status ritz_stage_springs(const ritz_stage *stage, const double *setting,
                                ritz_springs *out);
 
-/** The same of all that joints lock: rows S q = 0, without scales. */
+/** Rows S q = 0 of all motions that joints lock, without scales. */
 ritz_status ritz_stage_locks(const ritz_stage *stage, const double *setting,
                              ritz_springs *out);
 

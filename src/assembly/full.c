@@ -288,7 +288,7 @@ static ritz_status stack_matrices(const ritz_held *p, size_t offset,
     return RITZ_OK;
 }
 
-/* A matrix of body k in the rows and columns of its dofs among all. */
+/* A matrix of body k, in the rows and columns of its dofs in the system. */
 static ritz_status place_block(const ritz_held *p, int64_t k,
                                const ritz_sparse *A, ritz_sparse *out)
 {

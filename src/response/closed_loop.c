@@ -79,7 +79,7 @@ ritz_status ritz_loop_measured(const ritz_dense *C, const ritz_dense *D,
     return multiply_q(sign, &D_yu, &c->D, e);
 }
 
-/* v = C_c w + D_c e, [w; r] behind the plant's n states. */
+/* v = C_c w + D_c e, where w and r follow the n states of the plant. */
 static ritz_status find_output(int64_t n, const ritz_state_space *controller,
                                const ritz_dense *e, ritz_dense *v)
 {

@@ -115,9 +115,9 @@ void ritz_groups_free(ritz_groups *groups);
 
 /*
  * A motion over time: its state, and how it advances by a step. Integrators
- * fill one (ritz_march_new). Runs that are no single linear model (models that
- * are switched, joined by constraints, controlled, or turned) fill one too,
- * with the functions that differ for them; ritz_march_run is the loop of all.
+ * fill one (ritz_march_new). Runs of other than one linear model (switched
+ * models, constraints, closed loops, spin and sweeps) fill one with functions
+ * of their own. ritz_march_run is the loop over time of all.
  */
 typedef struct ritz_march {
     const ritz_motion *motion; /* borrowed */
@@ -126,8 +126,8 @@ typedef struct ritz_march {
     double *x, *v; /* n each; of states v is NULL */
     double dissipated, work;
     void *own; /* of the integrator */
-    /** What `own` carries from a step to the next in addition to x and v:
-     * with these numbers restored the march goes on bit for bit. Within own. */
+    /** The numbers, part of `own`, that a step needs in addition to x and v: if
+     * they are restored, the march continues with identical bits. */
     double *memory;
     int64_t num_memory;
     /** One step, with inputs as they are at its start and at its end. */
@@ -140,8 +140,8 @@ typedef struct ritz_march {
     /** Energies of the present state; NULL: those of M and K. */
     void (*energy)(const struct ritz_march *march, double *kinetic,
                    double *potential);
-    /** Values of its own that are stored with each time that is written, such
-     * as the violation of constraints, and their names. */
+    /** Diagnostics that are stored with each time that is written, such as the
+     * violation of constraints, and their names. */
     int64_t num_diagnostics;
     const char *const *diagnostic;
     void (*diagnose)(const struct ritz_march *march, double *out);
@@ -181,7 +181,7 @@ struct ritz_reach;
  * @param[in,out] reach  noted with each time that is written; may be NULL
  * @param[out] s  empty; freed by the caller on failure too. Its inputs, outputs
  *                and damping have no names yet (ritz_simulation_label)
- * @return RITZ_ERR_CONVERGENCE if the motion leaves all bounds
+ * @return RITZ_ERR_CONVERGENCE if the motion grows without bound
  */
 ritz_status ritz_march_run(ritz_march *march,
                            const ritz_simulation_request *request,
@@ -214,7 +214,7 @@ typedef struct ritz_reach {
 ritz_status ritz_reach_new(ritz_model subject, const ritz_motion *motion,
                            ritz_reach *out);
 
-/** Take the march as it is at @p seconds into account. */
+/** Take the state of the march at @p seconds into account. */
 void ritz_reach_note(ritz_reach *reach, const ritz_march *march,
                      double seconds);
 
@@ -241,8 +241,8 @@ typedef ritz_status ritz_run_function(ritz_model subject,
                                       ritz_simulation *out);
 
 /**
- * Run and, if the request asks for coordinates, let them be outputs of the run,
- * behind the model's own, and take them out of these.
+ * Run. If the request includes coordinates, they are additional outputs of the
+ * run, after those of the model, and are moved out of the outputs at its end.
  */
 ritz_status ritz_simulate_coordinates(ritz_model subject,
                                       const ritz_simulation_request *request,

@@ -258,7 +258,7 @@ static void copy_values(double *to, const double *from, int64_t count)
         memcpy(to, from, (size_t)count * sizeof *to);
 }
 
-/* Outputs of time k, behind them the coordinates and their rates. */
+/* Copy outputs at time k, followed by coordinates and their rates. */
 static void copy_outputs(const ritz_simulation *from, int64_t k,
                          ritz_simulation *s)
 {
@@ -272,7 +272,7 @@ static void copy_outputs(const ritz_simulation *from, int64_t k,
         copy_values(y, parts[j] + k * n, n);
 }
 
-/* All that an earlier run has stored. */
+/* Copy all that an earlier run has stored. */
 static void copy_times(const ritz_simulation *from, ritz_simulation *s)
 {
     const double *const energies[] = {from->kinetic, from->potential,
@@ -291,7 +291,7 @@ static void copy_times(const ritz_simulation *from, ritz_simulation *s)
         copy_values(into[e], energies[e], from->count);
 }
 
-/* Whether a run that ended early is one of this march and request. */
+/* Whether a run that ended early belongs to this march and request. */
 static bool is_same_run(const ritz_march *march,
                         const ritz_simulation_request *request, int64_t steps,
                         const ritz_simulation *from, const ritz_simulation *s)
@@ -324,7 +324,7 @@ static ritz_status resume_run(const ritz_simulation_request *request,
     return RITZ_OK;
 }
 
-/* What is stored with the present time. */
+/* Store values of the present time, and refuse a motion that diverges. */
 static ritz_status store_time(const ritz_simulation_request *request,
                               const ritz_march *march, double energy,
                               const double *u, ritz_reach *reach,
@@ -345,7 +345,7 @@ static ritz_status store_time(const ritz_simulation_request *request,
     return RITZ_OK;
 }
 
-/* From the present time to the end. */
+/* Run from the present time to the end. */
 static ritz_status take_steps(ritz_march *march,
                               const ritz_simulation_request *request,
                               int64_t steps, double energy, ritz_reach *reach,
