@@ -15,11 +15,12 @@ enum {
     HIGH = 210,
 };
 
-/* Largest over least positive value from which a scale is logarithmic, and what
-   is below the largest by more is drawn at the edge. */
+/* A scale is logarithmic if the ratio of the largest to the least positive
+   value is above this; values that are smaller by more are drawn at the
+   edge. */
 static const double decades = 1e5, deepest = 1e-18;
 
-/* What is drawn of a simulation. */
+/* Values of a simulation that are drawn. */
 typedef struct series {
     int64_t count;
     char (*name)[RITZ_NAME_SIZE];
@@ -74,7 +75,7 @@ typedef struct extremes {
     double positive;
 } extremes;
 
-/* One output of one run; of each few points the least and the largest stay. */
+/* One output of one run: the least and the largest of every few points. */
 static extremes put_line(runs *all, int64_t i, int64_t w)
 {
     const ritz_simulation *s = all->run[w];
@@ -117,7 +118,8 @@ static extremes put_line(runs *all, int64_t i, int64_t w)
     return found;
 }
 
-/* Whether what has these extremes spans decades; the range of its scale. */
+/* Whether values with these extremes span decades, and the range of the
+   scale. */
 static bool choose_scale(const runs *all, extremes found, chart_range *y)
 {
     const double most = found.y.high;

@@ -162,12 +162,12 @@ typedef struct loop_options {
     bool force;
 } loop_options;
 
-/** Join a controller to a plant, as options say, and say what is joined. */
+/** Join a controller to a plant, as options say, and print what is joined. */
 ritz_status loop_join(cli_run *run, const loop_options *given,
                       const ritz_io *plant, const ritz_io *controller,
                       ritz_loop *out);
 
-/** Say whether a loop is stable, and which pole decides. */
+/** Print whether a loop is stable, and the pole that decides it. */
 void loop_say_stability(cli_run *run, const ritz_probe *probe);
 
 typedef struct response_options {
@@ -351,24 +351,24 @@ typedef struct simulation_options {
     const char *initial;     /* "mode:K*A" or a file; NULL: at rest */
     const char *checkpoint;  /* NULL: none */
     const char *constraints; /* "METHOD:NAME=VALUE,..."; NULL: eliminated */
-    int64_t start_digits;    /* of the bodies' start; 0: all */
+    int64_t start_digits;    /* of initial values of bodies; 0: all */
     double seconds, step, accuracy, rho, up_to_hz;
     double band_hz[2]; /* 0, 0: not given */
     int64_t every;
     cli_list input; /* "NAME=SIGNAL" */
     bool hold_zero, cost, coordinates, any_step;
-    const char *switched;                /* "LIBRARY,LIBRARY"; NULL: not */
+    const char *switched;                /* "LIBRARY,LIBRARY"; NULL: none */
     const char *inner, *jump, *share_of; /* words */
     double switch_interval, indicator, hysteresis, dwell;
     bool redundant, look_ahead;
     loop_options loops;   /* of --controller */
-    const char *way;      /* of its propagation, "split" or "exact" */
-    double sample, delay; /* of a sampled controller, s; 0: it is none */
+    const char *way;      /* how it is propagated, "split" or "exact" */
+    double sample, delay; /* of a sampled controller, s; 0: not sampled */
     bool discrete;
     const char *sweep; /* "JOINT=PATH"; NULL: no joint moves */
     const char *sweep_basis, *sweep_against; /* rows of simulation_swept.c */
     int64_t sweep_modes;                     /* 0: not given */
-    char sweep_at[2 * RITZ_NAME_SIZE];       /* model.at of its start */
+    char sweep_at[2 * RITZ_NAME_SIZE];       /* model.at at its start */
     model_options model;
 } simulation_options;
 

@@ -14,7 +14,7 @@ typedef struct recovery {
     model system;
     model body;
     ritz_dense V; /* q = V x; {0}: the history has q */
-    bool floats;  /* x is beside the rigid motion of a frame */
+    bool floats;  /* x is relative to the rigid motion of a frame */
     ritz_damping damping;
     ritz_recoverer rules;
     ritz_recovered peaks;
@@ -60,7 +60,8 @@ static ritz_status take_system(recovery *r)
     return ritz_dense_copy(&r->system.at->P[k], &r->V);
 }
 
-/* Modes of the component with the springs of its dampers, as an FMU has them. */
+/* Modes of the component with the springs of its dampers, as an FMU has
+   them. */
 static ritz_status take_modes(recovery *r)
 {
     const ritz_reduced *reduced = &r->body.reduced;
@@ -181,7 +182,7 @@ static ritz_status open_history(recovery *r)
 }
 
 /* Whether the history and the component allow mode acceleration. Accelerations
-   beside a frame lack those of the frame. */
+   relative to a frame lack those of the frame. */
 static bool can_accelerate(const recovery *r)
 {
     const ritz_reduced *reduced = &r->body.reduced;

@@ -394,7 +394,7 @@ static ritz_status say_stability(cli_run *run, const ritz_state_space *closed,
     return RITZ_OK;
 }
 
-/* A loop with a part that was measured has no poles to tell. */
+/* Poles of a loop with a measured part are not known. */
 static ritz_status leave_stability(cli_run *run, const loop_options *given)
 {
     RITZ_REFUSE_IF(given->states, RITZ_ERR_ARGUMENT,
@@ -572,7 +572,7 @@ static ritz_status find_response(cli_run *run, const model *m,
     return given->zeros ? find_all_zeros(run, m) : RITZ_OK;
 }
 
-/* The model and its controller, as options ask for them. */
+/* Read the model and its controller, as the options say. */
 static ritz_status read_parts(cli_run *run, const response_options *given,
                               model *m, model *controller)
 {

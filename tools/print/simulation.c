@@ -6,8 +6,7 @@
 
 #include <inttypes.h>
 
-/* Take words of the command line, and refuse what makes no sense whatever the
-   model is. */
+/* Read words of the command line, and refuse those that no model can have. */
 static void take_options(const cli_run *run, simulation_options *given)
 {
     const cli_program *program = run->program;
@@ -168,7 +167,7 @@ static void simulation_task_free(simulation_task *d)
     ritz_scene_free(&d->scene);
 }
 
-/* The kind of run that options ask for; NULL: that of one linear model. */
+/* The kind of run that the options request; NULL: a run of one linear model. */
 static ritz_status find_kind(const simulation_options *given,
                              const simulation_kind **out)
 {
@@ -222,7 +221,7 @@ static ritz_status warn_of_damping(cli_run *run, ritz_model subject,
     return RITZ_OK;
 }
 
-/* One linear model, with the step that was given or that an accuracy needs. */
+/* A run of one linear model, with the given step or that of --accuracy. */
 static ritz_status simulate_model(simulation_task *d,
                                   const ritz_simulation_request *request,
                                   ritz_simulation *out)
@@ -240,7 +239,7 @@ static ritz_status simulate_model(simulation_task *d,
     return warn_of_damping(d->run, d->subject, request);
 }
 
-/* A rate of spin that changes makes a run of its own. */
+/* A scene whose rate of spin changes has a run of its own. */
 static ritz_status check_spin(const simulation_options *given,
                               const simulation_kind *kind)
 {
