@@ -2,13 +2,13 @@
  * Time responses of linear models, and what they cost.
  *
  * Inputs are functions of time from t = 0 on. An integrator evaluates them at
- * the ends of its steps only: between them it takes them as linear
- * (RITZ_HOLD_FIRST) or as they were at the start (RITZ_HOLD_ZERO, what a
- * sampled controller commands). `modal` is exact for both; the others are
- * measured against it.
+ * the ends of its steps only. Within a step it assumes that they are linear
+ * (RITZ_HOLD_FIRST), or constant at the value of its start (RITZ_HOLD_ZERO, as
+ * for a sampled controller). `modal` is exact for both, and the errors of other
+ * integrators are relative to it.
  *
- * Structural damping K4 is refused: i K4 is of harmonic motion alone, and read
- * as a time response it would respond before there is an input.
+ * Structural damping K4 is refused: i K4 is defined for harmonic motion only.
+ * In a time response it would cause motion before there is an input.
  */
 #ifndef RITZ_SIMULATE_H
 #define RITZ_SIMULATE_H
@@ -32,7 +32,7 @@ typedef enum ritz_signal_kind {
     RITZ_SIGNAL_IMPULSE, /* of that area, at t = 0: a jump of the velocity */
     RITZ_SIGNAL_SINE,    /* sin(2 pi hertz[0] t) */
     RITZ_SIGNAL_CHIRP,   /* from hertz[0] to hertz[1], linear over the run */
-    RITZ_SIGNAL_TABLE,   /* linear between its points, 0 beside them */
+    RITZ_SIGNAL_TABLE,   /* linear between its points, 0 outside */
 } ritz_signal_kind;
 
 typedef struct ritz_signal {
@@ -44,19 +44,20 @@ typedef struct ritz_signal {
 } ritz_signal;
 
 /**
- * "step", "impulse", "sine:F" or "chirp:F0,F1", each with "*A" behind it for
- * another amplitude than 1; anything else is a file of two columns, time and
- * value, where '#' begins a comment. Of a time that is there twice the second
- * value counts from there on.
+ * "step", "impulse", "sine:F" or "chirp:F0,F1", each followed by "*A" for an
+ * amplitude other than 1. Any other text names a file of two columns, time and
+ * value, in which '#' begins a comment. If a time occurs twice, the signal
+ * jumps to the second value.
  *
- * @return RITZ_ERR_ARGUMENT with what is wrong; RITZ_ERR_FILE, RITZ_ERR_FORMAT
+ * @return RITZ_ERR_ARGUMENT if the text is not valid; RITZ_ERR_FILE,
+ *         RITZ_ERR_FORMAT
  */
 ritz_status ritz_signal_parse(const char *text, ritz_signal *out);
 
-/** Whether a text names a file: none of the words. */
+/** Whether a text names a file: it begins with none of these words. */
 bool ritz_signal_is_file(const char *text);
 
-/** Value at @p t >= 0 of a run of @p seconds; 0 of an impulse. */
+/** Value at @p t >= 0 in a run of @p seconds; 0 for an impulse. */
 double ritz_signal_at(const ritz_signal *signal, double t, double seconds);
 
 void ritz_signal_free(ritz_signal *signal);
@@ -105,9 +106,9 @@ typedef struct ritz_simulation_request {
     bool (*stop)(void *context); /* asked before each step; true ends the run
                                     early. NULL: it runs to its end */
     void *context;
-    /* A run of the same model and request that ended early: it is continued,
-       and yields the bits that it would have yielded without an end. NULL: from
-       the start */
+    /* A run of the same model and request that ended early, which is continued:
+       results are identical to those of a run without an end. NULL: the run
+       begins at t = 0 */
     const struct ritz_simulation *from;
 } ritz_simulation_request;
 
@@ -121,8 +122,9 @@ typedef struct ritz_simulation_request {
  *
  *     balance = kinetic + potential + dissipated - work - (at the start)
  *
- * is what the integrator adds or takes: rounding for `modal`, whose integrals
- * are exact, and for `trapezoidal`, of which this is an identity.
+ * is the energy that the integrator adds or removes. It is rounding for
+ * `modal`, whose integrals are exact, and for `trapezoidal`, which conserves
+ * it.
  */
 typedef struct ritz_simulation {
     int64_t count;
@@ -130,7 +132,7 @@ typedef struct ritz_simulation {
     int64_t num_inputs, num_outputs;
     char (*input)[RITZ_NAME_SIZE];
     char (*output)[RITZ_NAME_SIZE];
-    double *u; /* u[k * num_inputs + j]; an impulse is not in it */
+    double *u; /* u[k * num_inputs + j], without impulses */
     double *y; /* y[k * num_outputs + i] */
     double *kinetic, *potential, *dissipated, *work, *balance; /* count, or
                                                                   all NULL */
@@ -150,55 +152,60 @@ typedef struct ritz_simulation {
 } ritz_simulation;
 
 /**
- * Simulate. Of a small dense model motions without mass are eliminated
- * statically. A full component goes by its modes up to request->up_to_hz, what
- * lies above them answering statically; or implicitly by one sparse factor,
- * with Rayleigh damping or that of its D. A state space goes by the exponential
- * of A, or by the trapezoidal rule.
+ * Simulate. Motions without mass of a small dense model are eliminated
+ * statically. A full component is represented by its modes up to
+ * request->up_to_hz, to which the static response of all other modes is added;
+ * or it is integrated implicitly with one sparse factor, with Rayleigh damping
+ * or that of its D. A state space is propagated by the exponential of A, or by
+ * the trapezoidal rule.
  *
  * The coordinates of a dense model are computed as additional outputs of the
  * same integration.
  *
- * An impulse moves a state at once; what of it is in an output directly, as in
- * an acceleration does, is an impulse too and left out.
+ * An impulse changes the state at once. Where an output depends on the input
+ * directly, as accelerations do, it has an impulse too, which is left out.
  *
- * A run that request->stop ends early is no failure: it has the times up to
- * there and a state.
+ * A run that request->stop ends early is no failure: it has the times until its
+ * end, and a state.
  *
- * @return RITZ_ERR_ARGUMENT if the step is beyond an explicit integrator's
- *         limit (which it names), if there is structural damping, if a motion
- *         without mass is damped, if request->from is not of this model and
- *         request, or if the request is contradictory;
- *         RITZ_ERR_CONVERGENCE if the motion leaves all bounds
+ * @return RITZ_ERR_ARGUMENT if the step is above the stability limit of an
+ *         explicit integrator (the sentence has the limit), if there is
+ *         structural damping, if a motion without mass is damped, if
+ *         request->from is not of this model and request, or if the request is
+ *         contradictory; RITZ_ERR_CONVERGENCE if the motion grows without bound
  * @cost   modal: O(r^3) once and O(r) a step, O(r^2) if D couples modes;
- *         the others O(r^3) once and O(r^2) a step; of a full component one
+ *         the others O(r^3) once and O(r^2) a step; for a full component one
  *         factor, and one solve a step
  */
 ritz_status ritz_simulate(ritz_model subject,
                           const ritz_simulation_request *request,
                           ritz_simulation *out);
 
-/* What came of asking for an accuracy. */
+/* The accuracy that ritz_simulate_accurate reached. */
 typedef struct ritz_accuracy {
-    double error;     /* reached, by outputs that were held to it */
-    int64_t num_left; /* outputs that were not */
+    double error;     /* largest of the outputs that must be accurate */
+    int64_t num_left; /* outputs that need not be: see below */
     int64_t left;     /* the worst of them; -1: none */
-    double rounding;  /* of it: difference over what could be shown by it */
+    double rounding;  /* of that output: its difference, relative to the
+                         largest value that the motion could give it */
 } ritz_accuracy;
 
 /**
- * The same with a step halved from request->step (0: a fiftieth of the run, a
- * tenth of the shortest period of a sine or chirp) until the outputs are within
- * @p tolerance of those of `modal` at half that step, which so also tells what
- * holding the inputs costs; of a full component by an implicit integrator, of
- * the same at half that step. Relative to the largest value of each output.
+ * Simulate with a step that is halved until the outputs differ by less than
+ * @p tolerance from those of `modal` at half that step, relative to the largest
+ * value of each output. The difference includes the error of holding inputs
+ * within a step. A full component with an implicit integrator is compared with
+ * the same integrator at half the step. The first step is request->step; if
+ * that is 0, a fiftieth of the run, or a tenth of the shortest period of a sine
+ * or chirp.
  *
- * An output that does not respond is rounding, and its own largest value tells
- * nothing. One that is not so accurate is left out if it is below 64 eps of
- * what the motion could show by it, or if its difference is below 1e-9 of that
- * and three halvings in a row have not halved it. What could be shown is |c|
- * |x| + |cv| |x'| + |ca| |x''|, |x|^2 = x'M x, |c|^2 = c M^-1 c' with the
- * diagonal of M, so that no unit matters; of a state space sum |c_j| |x_j|.
+ * An output that does not respond consists of rounding, to whose largest value
+ * no error is relative. An output that is not accurate is therefore left out if
+ * it is below 64 eps of the largest value that the motion could give it, or if
+ * its difference is below 1e-9 of that value and three halvings in a row have
+ * not halved it. That value is |c| |x| + |cv| |x'| + |ca| |x''|, |x|^2 = x'M x,
+ * |c|^2 = c M^-1 c' with the diagonal of M, so that it does not depend on
+ * units; for a state space it is sum |c_j| |x_j|.
  *
  * Only the last run, with the step that was found, may end early or be
  * continued.
