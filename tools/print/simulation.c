@@ -175,7 +175,7 @@ static ritz_status find_kind(const simulation_options *given,
     for (const simulation_kind *k = simulation_kinds; k->option; k++) {
         if (!k->asked(given))
             continue;
-        RITZ_REFUSE_IF(*out, RITZ_ERR_ARGUMENT, "%s or %s, one of them",
+        RITZ_REFUSE_IF(*out, RITZ_ERR_ARGUMENT, "give %s or %s, not both",
                        (*out)->option, k->option);
         *out = k;
     }
