@@ -123,8 +123,8 @@ typedef struct ritz_simulation_request {
  *     balance = kinetic + potential + dissipated - work - (at the start)
  *
  * is the energy that the integrator adds or removes. It is rounding for
- * `modal`, whose integrals are exact, and for `trapezoidal`, which conserves
- * it.
+ * `modal`, whose integrals are exact, and for `trapezoidal`, which satisfies
+ * the balance exactly.
  */
 typedef struct ritz_simulation {
     int64_t count;

@@ -1,10 +1,10 @@
 /*
- * The step at which outputs are as accurate as asked: halved until they are.
+ * The step is halved until outputs have the accuracy that is requested.
  *
- * Halving cannot help an output that is rounding. It is recognised by its size
- * relative to what the motion could produce at it, or by a difference that is
- * small relative to that and does not fall, where second order makes it fall
- * fourfold.
+ * Halving does not improve an output that consists of rounding. Such an output
+ * is recognised by its size, relative to the largest value that the motion
+ * could give it; or by a difference that is small relative to that value and
+ * does not decrease, although a method of second order divides it by four.
  */
 #include <ritz/simulate.h>
 
@@ -16,7 +16,7 @@
 #include <math.h>
 #include <stdio.h>
 
-/* Steps, and values at all of them, that are worth trying: 2 GiB. */
+/* Largest numbers of steps, and of values at all of them: 2 GiB. */
 static const int64_t most_steps = INT64_C(1) << 23;
 static const int64_t most_values = INT64_C(1) << 28;
 

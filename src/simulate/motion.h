@@ -1,7 +1,7 @@
 /*
- * What integrators act on, in one of four forms, all outputs as
+ * The equations that integrators solve, in one of four forms. All outputs are
  *
- *     y = C x + Cv x' + feed u,   accelerations written out
+ *     y = C x + Cv x' + feed u,   accelerations being replaced by the equations
  *
  * modal    x'' + D x' + Lambda x = B u, D diagonal or not
  * dense    M x'' + D x' + K x = B u, full matrices, M regular
@@ -27,7 +27,7 @@ typedef enum ritz_form {
 typedef struct ritz_motion {
     ritz_form form;
     int64_t n;          /* coordinates, or states */
-    int64_t original;   /* of the model, as x0 and v0 are given */
+    int64_t original;   /* coordinates of the model, those of x0 and v0 */
     int64_t num_rigid;  /* modal */
     double *lambda;     /* modal, n; 0 where rigid */
     double highest;     /* largest |lambda| known of a dense model, else NaN */
@@ -37,21 +37,21 @@ typedef struct ritz_motion {
     ritz_dense B;           /* n x inputs */
     ritz_dense C, Cv;       /* outputs x n; Cv {0} of states */
     ritz_dense feed;        /* outputs x inputs */
-    ritz_dense push;        /* n x inputs, what a unit impulse adds to x', or
-                               to x of states */
+    ritz_dense push;        /* n x inputs: change of x', or of states x, by a
+                               unit impulse */
     ritz_dense to;          /* original x n: x = to' x0; {0}: the same */
     bool *massless;         /* sparse, n: rows empty in M */
-    bool energies;          /* are wanted, which costs */
-    bool any_step;          /* of an explicit integrator, to see it fail */
+    bool energies;          /* are requested; they take time */
+    bool any_step;          /* accept an unstable explicit step */
 } ritz_motion;
 
-/** Modal if @p modal, else dense: of its modes where M is singular. */
+/** Modal if @p modal, else dense; in modes of the model if M is singular. */
 ritz_status ritz_motion_dense(ritz_model subject, bool modal, ritz_motion *out);
 
-/** Modal, of modes as they are: what @p modes owns moves over. */
+/** Modal, with the matrices of @p modes, which are moved. */
 ritz_status ritz_motion_take(ritz_modal_model *modes, ritz_motion *m);
 
-/** Whichever of them a subject and an integrator ask for. */
+/** The form that a subject and an integrator need. */
 ritz_status ritz_motion_new(ritz_model subject,
                             const ritz_simulation_request *request,
                             ritz_motion *out);
