@@ -135,7 +135,7 @@ static ritz_status exact_matrix(const ritz_state_space *closed, double step,
     return RITZ_OK;
 }
 
-/* Add the form factor v'R z to Q symmetrically; v is in rows n to 2 n of z. */
+/* Q += factor v'R z, made symmetric; v is in rows n to 2 n of z. */
 static void add_power(double factor, int64_t n, const ritz_dense *R,
                       ritz_dense *Q)
 {
