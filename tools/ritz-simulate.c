@@ -93,7 +93,7 @@ static const cli_program program = {
         CLI_REAL("sample", &(it)->sample, "T", 1e-12, 1e12,                    \
                  "seconds between samples of the controller [continuous]"),    \
         CLI_REAL("delay", &(it)->delay, "T", 0.0, 1e12,                        \
-                 "seconds from a sample until the controller acts [0]"),       \
+                 "seconds from a sample until the controller acts"),           \
         CLI_FLAG("discrete", &(it)->discrete,                                  \
                  "the controller is a discrete system, sample to sample"),     \
         CLI_FLAG("force", &(it)->loops.force,                                  \
@@ -134,7 +134,7 @@ static const cli_program program = {
         CLI_REAL("hysteresis", &(it)->hysteresis, "H", 0.0, 0.99,              \
                  "multiply shares of the present vectors by 1 + H"),           \
         CLI_REAL("dwell", &(it)->dwell, "T", 0.0, 1e12,                        \
-                 "shortest time for which a set is kept, s [one interval]"),   \
+                 "shortest time for which a set is kept, s; 0: one interval"), \
         CLI_FLAG("redundant", &(it)->redundant,                                \
                  "vectors of the library may be linearly dependent")
 
