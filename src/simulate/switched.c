@@ -305,27 +305,28 @@ static ritz_status change_set(ritz_march *march, switching *s)
     return finish_set(march, s);
 }
 
-/* Inputs at the end of the interval that begins. */
-static const double *look_ahead(const ritz_march *march, switching *s)
+/* Inputs some steps later. */
+static void find_inputs(const ritz_march *march, const switching *s,
+                        int64_t steps, double *u)
 {
     const ritz_simulation_request *request = s->request;
-    const double t = (double)(march->steps + s->steps_between) * request->step;
+    const double t = (double)(march->steps + steps) * request->step;
 
-    if (!s->switched->ahead)
-        return NULL;
     for (int64_t j = 0; request->signal && j < s->library->B.ncol; j++)
-        s->ahead[j] = ritz_signal_at(&request->signal[j], t, request->seconds);
-    return s->ahead;
+        u[j] = ritz_signal_at(&request->signal[j], t, request->seconds);
 }
 
-/* Whether R at the start of a step is more than rounding; if it is not, R at
-   the end of the step is used. */
+/* Whether R at the start of a step is more than rounding; if it is not, R with
+   the inputs a step later is used. Where inputs are held, these are not the
+   inputs at the end of the step. */
 static bool find_residue(const ritz_march *march, switching *s,
-                         const double *u0, const double *u1)
+                         const double *u0)
 {
-    const double *const u[] = {u0, u1};
-    const double *ahead = look_ahead(march, s);
+    const double *const u[] = {u0, s->u1};
+    const double *ahead = s->switched->ahead ? s->ahead : NULL;
 
+    find_inputs(march, s, 1, s->u1);
+    find_inputs(march, s, s->steps_between, s->ahead);
     for (int k = 0; k < 2; k++) {
         ritz_residue_find(s->library, march->x, march->v, u[k], ahead,
                           &s->residue);
@@ -336,8 +337,7 @@ static bool find_residue(const ritz_march *march, switching *s,
     return false;
 }
 
-static ritz_status switch_set(ritz_march *march, switching *s, const double *u0,
-                              const double *u1)
+static ritz_status switch_set(ritz_march *march, switching *s, const double *u0)
 {
     ritz_choosing *c = &s->choosing;
     const double since = (double)march->steps - s->told[LAST_SWITCH];
@@ -345,7 +345,7 @@ static ritz_status switch_set(ritz_march *march, switching *s, const double *u0,
     const size_t size = (size_t)s->library->num_vectors * sizeof(double);
 
     s->told[JUMP_X] = s->told[JUMP_V] = 0.0;
-    if (!find_residue(march, s, u0, u1))
+    if (!find_residue(march, s, u0))
         return RITZ_OK;
     if (kept) {
         s->told[INDICATOR] = ritz_present_indicator(s->library, &s->residue, c);
@@ -398,7 +398,7 @@ static ritz_status advance_switched(ritz_march *march, const double *u0,
         RITZ_CHECK(finish_set(march, s));
     }
     if (march->steps % s->steps_between == 0)
-        RITZ_CHECK(switch_set(march, s, u0, u1));
+        RITZ_CHECK(switch_set(march, s, u0));
     if (!s->set.made)
         return RITZ_OK; /* R was zero so far: nothing moves */
     for (int64_t j = 0; j < m; j++) {

@@ -728,6 +728,33 @@ static void a_residual_of_zero_changes_no_set(void **state)
     assert_true(report.num_switches == 0 && report.vector_steps == 0.0);
 }
 
+/* A sine is 0 when the run begins: its set must be found by what comes, also
+   where inputs are held over a step. */
+static void a_force_that_begins_with_the_run_is_found(void **state)
+{
+    static const ritz_hold holds[] = {RITZ_HOLD_FIRST, RITZ_HOLD_ZERO};
+    static const ritz_signal sine = {
+        .kind = RITZ_SIGNAL_SINE, .amplitude = 1.0, .hertz = {2.0, 0.0}};
+
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        RITZ_OWN(refused) r = {0};
+        RITZ_OWN(ritz_simulation) full = {0}, s = {0};
+        double size = 0.0, difference = 0.0;
+
+        assert_ok(refused_new(&r));
+        r.request.hold = holds[k];
+        r.request.signal = &sine;
+        r.request.seconds = r.switched.interval = 0.5;
+        r.switched.least = 1.0 - 1e-9;
+        assert_ok(ritz_simulate(r.m.dense, &r.request, &full));
+        assert_ok(ritz_simulate_switched(r.m.dense, &r.request, &r.switched,
+                                         NULL, &s));
+        ritz_simulation_compare(&full, &s, 0, &size, &difference);
+        assert_true(size > 1e-6 && difference < 1e-6 * size);
+    }
+}
+
 /* --- runs that are ended early, and failing allocations ------------------- */
 
 static bool count_down(void *context)
@@ -828,6 +855,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(ties_do_not_depend_on_rounding),
     cmocka_unit_test(hysteresis_switches_less),
     cmocka_unit_test(a_residual_of_zero_changes_no_set),
+    cmocka_unit_test(a_force_that_begins_with_the_run_is_found),
     cmocka_unit_test(a_switched_run_is_continued_bit_for_bit),
     cmocka_unit_test(a_switched_run_survives_every_allocation),
 };
