@@ -95,7 +95,7 @@ typedef struct ritz_switched_report {
  * Diagnostics, of the interval that ends at the stored time: "vectors",
  * "indicator", "leading vector" (from 1; 0: none), "vector-steps", "switches",
  * "fallbacks", "jump of displacement" and "jump of velocity" (at the last
- * switch, in M), "energy lost at switches" and "energy gained at switches"
+ * change of the set, in M), "energy lost at switches" and "energy gained at switches"
  * (sums). The dissipated energy includes what switches take.
  *
  * @param[out] report  may be NULL; filled on failure too, as far as known

@@ -344,7 +344,6 @@ static ritz_status switch_set(ritz_march *march, switching *s, const double *u0)
     const bool kept = s->set.made && since < (double)s->steps_kept;
     const size_t size = (size_t)s->library->num_vectors * sizeof(double);
 
-    s->told[JUMP_X] = s->told[JUMP_V] = 0.0;
     if (!find_residue(march, s, u0))
         return RITZ_OK;
     if (kept) {
