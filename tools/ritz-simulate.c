@@ -117,22 +117,22 @@ static const cli_program program = {
                  "seconds from switch to switch, a multiple of the step"),     \
         CLI_REAL("indicator", &(it)->indicator, "E", 1e-6, 1.0 - 1e-9,         \
                  "vectors are added until their share of the residual is "     \
-                 "above E"),                                                   \
+                 "above E, at most 1 - 1e-9 [0.99]"),                          \
         CLI_WORD("share-of", &(it)->share_of, "model|library",                 \
                  "that share is of the whole residual, or of its part in the " \
-                 "library"),                                                   \
+                 "library [model]"),                                           \
         CLI_FLAG(                                                              \
             "look-ahead", &(it)->look_ahead,                                   \
             "choose vectors for the inputs at the end of a switch interval "   \
             "too"),                                                            \
         CLI_WORD("inner", &(it)->inner, "mass|euclidean",                      \
                  "inner product in which vectors are orthogonal and "          \
-                 "shares are measured"),                                       \
+                 "shares are measured [mass]"),                                \
         CLI_WORD("jump", &(it)->jump, "offset|project",                        \
                  "at a switch, keep the part of the state outside the set "    \
-                 "constant, or remove it"),                                    \
+                 "constant, or remove it [offset]"),                           \
         CLI_REAL("hysteresis", &(it)->hysteresis, "H", 0.0, 0.99,              \
-                 "multiply shares of the present vectors by 1 + H"),           \
+                 "multiply shares of the present vectors by 1 + H [0]"),       \
         CLI_REAL("dwell", &(it)->dwell, "T", 0.0, 1e12,                        \
                  "shortest time for which a set is kept, s; 0: one interval"), \
         CLI_FLAG("redundant", &(it)->redundant,                                \
@@ -160,10 +160,8 @@ int main(int argc, char **argv)
                                 .hold = "first",
                                 .rho = 0.8,
                                 .every = 1,
-                                .indicator = 0.99,
-                                .inner = "mass",
-                                .jump = "offset",
-                                .share_of = "model",
+                                .hysteresis = -1.0, /* not given */
+                                .dwell = -1.0,
                                 .sweep_basis = "switched"};
     const cli_option options[] = {
         RUN_OPTIONS(&given),

@@ -104,6 +104,14 @@ expect 1 '--switched needs --switch-interval' ritz-simulate $turn turn.h5 \
     --switched modes -o x.h5
 expect 1 '--switched needs --step' ritz-simulate --seconds 1 \
     --input along=step turn.h5 --switched modes --switch-interval 0.1 -o x.h5
+for given in '--switch-interval 0.1' '--indicator 0.99' '--share-of model' \
+    --look-ahead '--inner mass' '--jump offset' '--hysteresis 0' '--dwell 0' \
+    --redundant; do
+    expect 2 'say how models are switched' ritz-simulate $turn turn.h5 \
+        --up-to-hz 1e6 $given -o x.h5
+done
+expect 2 '--method trapezoidal cannot be used' $run --damping 'rayleigh 10 0' \
+    --switched basis.h5 --method trapezoidal
 works 'nothing is written where a run is refused' test ! -e x.h5
 
 echo "1..$count"

@@ -25,6 +25,7 @@ static void take_options(const cli_run *run, simulation_options *given)
     if (given->checkpoint && !run->output)
         cli_refuse(program, "--checkpoint needs -o");
     simulation_check_loop(program, given);
+    simulation_check_switched(program, given);
     if (given->accuracy == 0.0)
         given->accuracy = 1e-3;
 }

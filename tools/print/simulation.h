@@ -76,6 +76,9 @@ ritz_status simulation_long_run(simulation_task *task,
 
 /* Switched reduced models. */
 bool simulation_switched_asked(const simulation_options *given);
+/* Refuse what makes no sense, and fill what was not given. */
+void simulation_check_switched(const cli_program *program,
+                               simulation_options *given);
 ritz_status simulation_switched_prepare(simulation_task *task);
 simulation_function simulation_switched;
 /** Whether the rate of spin of the scene changes, and a run of it. */

@@ -8,6 +8,7 @@
 #include <ritz/switched.h>
 
 #include <inttypes.h>
+#include <math.h>
 #include <string.h>
 
 enum { MOST_LIBRARIES = 16 };
@@ -15,6 +16,32 @@ enum { MOST_LIBRARIES = 16 };
 bool simulation_switched_asked(const simulation_options *given)
 {
     return given->switched != NULL;
+}
+
+void simulation_check_switched(const cli_program *program,
+                               simulation_options *given)
+{
+    const bool any = given->switch_interval > 0.0 || given->indicator > 0.0 ||
+                     given->hysteresis >= 0.0 || given->dwell >= 0.0 ||
+                     given->inner || given->jump || given->share_of ||
+                     given->redundant || given->look_ahead;
+
+    if (!given->switched && any)
+        cli_refuse(program,
+                   "--switch-interval, --indicator, --share-of, --look-ahead, "
+                   "--inner, --jump, --hysteresis, --dwell and --redundant say "
+                   "how models are switched: give the library, --switched");
+    if (given->switched && given->integrator != &ritz_integrator_modal)
+        cli_refuse(program,
+                   "--switched propagates each set exactly, by its modes: "
+                   "--method %s cannot be used with it",
+                   given->method);
+    given->indicator = given->indicator > 0.0 ? given->indicator : 0.99;
+    given->hysteresis = fmax(given->hysteresis, 0.0);
+    given->dwell = fmax(given->dwell, 0.0);
+    given->inner = given->inner ? given->inner : "mass";
+    given->jump = given->jump ? given->jump : "offset";
+    given->share_of = given->share_of ? given->share_of : "model";
 }
 
 /* What follows "modes" in "modes" or "modes:K", the lowest modes of the model;
