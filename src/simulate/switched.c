@@ -553,8 +553,10 @@ static ritz_status count_steps(double seconds, double step, bool exact,
     const double ratio = seconds / step;
 
     RITZ_REFUSE_IF(!(ratio >= 0.0) || ratio > RITZ_MOST_STEPS,
-                   RITZ_ERR_ARGUMENT, "%g s is no time between switches",
-                   seconds);
+                   RITZ_ERR_ARGUMENT,
+                   "%s of %g s is not within 0 and %.0e steps of %g s",
+                   exact ? "a switch interval" : "a dwell", seconds,
+                   RITZ_MOST_STEPS, step);
     *out = (int64_t)(exact ? round(ratio) : ceil(ratio - RITZ_STEP_ROUNDING));
     RITZ_REFUSE_IF(exact && (*out < 1 || fabs(ratio - (double)*out) >
                                              RITZ_SAME * (double)*out),
