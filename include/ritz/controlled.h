@@ -22,9 +22,10 @@
 
 #pragma GCC visibility push(default)
 
-/* Most states of a closed loop whose poles are computed, and most states of one
-   that is propagated by its exponential. */
-enum { RITZ_LOOP_POLES = 600, RITZ_LOOP_EXACT = 400 };
+/* Most states of a closed loop whose poles are computed, and of one that is
+   propagated by its exponential; most dofs of a component that is integrated
+   unreduced in a loop whose poles are computed. */
+enum { RITZ_LOOP_POLES = 600, RITZ_LOOP_EXACT = 400, RITZ_LOOP_DOFS = 400 };
 
 /* A controller and how it acts. All of it is borrowed. */
 typedef struct ritz_controlled {

@@ -153,19 +153,34 @@ static ritz_status find_limit(const scheme *by, ritz_outlook *out)
     return RITZ_OK;
 }
 
+/* The plant in first-order form: that of its motion, or of the component itself
+   if it is integrated unreduced. */
+static ritz_status find_plant(ritz_model subject, const ritz_motion *motion,
+                              ritz_state_space *out)
+{
+    const ritz_io io = ritz_model_io(subject);
+    const ritz_state_space *same =
+        NULL; /* out: a component is no state space */
+
+    return motion->form == RITZ_FORM_SPARSE
+               ? ritz_model_states(subject, out, &same)
+               : ritz_motion_states(motion, &io, out);
+}
+
 /* Poles of a continuous loop that is not too large. */
 static ritz_status probe_loop(ritz_model subject, const ritz_motion *motion,
                               const ritz_controlled *controlled,
                               ritz_outlook *out)
 {
-    const ritz_io io = ritz_model_io(subject);
     const int64_t order = 2 * motion->n + controlled->controller->A.nrow;
+    const bool few = motion->form == RITZ_FORM_SPARSE
+                         ? motion->n <= RITZ_LOOP_DOFS
+                         : order <= RITZ_LOOP_POLES;
     RITZ_OWN(ritz_state_space) plant = {0}, closed = {0};
 
-    if (controlled->sample > 0.0 || controlled->delay > 0.0 ||
-        motion->form == RITZ_FORM_SPARSE || order > RITZ_LOOP_POLES)
+    if (controlled->sample > 0.0 || controlled->delay > 0.0 || !few)
         return RITZ_OK;
-    RITZ_CHECK(ritz_motion_states(motion, &io, &plant));
+    RITZ_CHECK(find_plant(subject, motion, &plant));
     RITZ_CHECK(ritz_closed_loop(&plant, controlled->controller,
                                 controlled->loop, &closed));
     RITZ_CHECK(ritz_probe_states(&closed, &out->loop));

@@ -126,6 +126,15 @@ printf '1 2 3\n0.5 2 3\n' >back.tsv
 expect 1 'the frequency of line 2 does not ascend' ritz-frf back.tsv -o none.h5
 works 'nothing is written of them' test ! -e none.h5
 
+# --- unreduced plants in time ---------------------------------------------------
+
+for method in trapezoidal generalised-alpha; do
+    expect 1 'the loop is unstable, pole at' ritz-simulate chain.h5 \
+        --seconds 5 --step 0.1 --input tip=step --method "$method" \
+        --controller drive.h5 --connect tip=u1 --connect y1=tip -o none.h5
+done
+works 'nothing is written of a loop that is unstable' test ! -e none.h5
+
 # --- nested files --------------------------------------------------------------
 
 ritz-basis normal-modes --modes 8 chain.h5 -q -o modes.h5
