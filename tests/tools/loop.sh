@@ -119,6 +119,12 @@ expect 1 'a measured response has no states to write' ritz-frf open.tsv \
     --closed-loop no-states.h5 -o none.h5
 expect 1 'measured were 0.0005 to 0.5 Hz: beyond, nothing is known' ritz-frf \
     open.tsv --to-hz 1 -o none.h5
+printf '0 1 0\n0.2 1 0\n0.5 1 0\n' >gain.tsv
+for refused in 'to-hz 1' 'closed-loop no-states.h5'; do
+    # shellcheck disable=SC2086 # words
+    expect 1 'ritz-frf: gain.tsv: ' ritz-frf whole.h5 --$refused \
+        --controller gain.tsv --connect tip=u1 --connect y1=tip -o none.h5
+done
 expect 1 'was measured, no points can be added' ritz-frf open.tsv \
     --tolerance 1e-3 -o none.h5
 expect 1 'was measured: --at, --damping' ritz-frf open.tsv --order 3 -o none.h5

@@ -395,10 +395,8 @@ static ritz_status say_stability(cli_run *run, const ritz_state_space *closed,
 }
 
 /* Poles of a loop with a measured part are not known. */
-static ritz_status leave_stability(cli_run *run, const loop_options *given)
+static ritz_status leave_stability(cli_run *run)
 {
-    RITZ_REFUSE_IF(given->states, RITZ_ERR_ARGUMENT,
-                   "--closed-loop: a measured response has no states to write");
     cli_warn(run,
              "whether the loop is stable is not known: a measured response "
              "has no states; its margins alone, in what was measured, say "
@@ -417,7 +415,7 @@ static ritz_status find_poles(cli_run *run, const loop_options *given,
     bool known = false;
 
     if (measured_is(m) || measured_is(&loop->controller))
-        return leave_stability(run, given);
+        return leave_stability(run);
     known = model_has_states(m);
     RITZ_REFUSE_IF(!known && given->states, RITZ_ERR_ARGUMENT,
                    "--closed-loop: the plant is too large for states, or has "
@@ -587,6 +585,11 @@ static ritz_status read_parts(cli_run *run, const response_options *given,
                    RITZ_ERR_ARGUMENT,
                    "--tolerance: '%s' was measured, no points can be added",
                    measured_is(m) ? path : other);
+    RITZ_REFUSE_IF(
+        (measured_is(m) || measured_is(controller)) && given->loops.states,
+        RITZ_ERR_ARGUMENT,
+        "%s: --closed-loop: a measured response has no states to write",
+        measured_is(m) ? path : other);
     if (measured_is(m))
         return measured_refuse(given, path);
     RITZ_CHECK(model_settle(m, path, &given->model));
@@ -602,7 +605,9 @@ static ritz_status find_points(cli_run *run, const response_options *given,
     return ritz_context(measured_is(m) || measured_is(controller)
                             ? measured_place(given, m, controller, out)
                             : place_points(m, given, out),
-                        run->operand[0]);
+                        measured_is(controller) && !measured_is(m)
+                            ? given->loops.controller
+                            : run->operand[0]);
 }
 
 ritz_status responses_run(cli_run *run, const response_options *given)
