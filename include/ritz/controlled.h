@@ -41,18 +41,21 @@ typedef struct ritz_controlled {
 
 /* Stability of a loop, and of the way in which it is propagated. */
 typedef struct ritz_outlook {
-    bool known; /* `loop` is set: poles of the continuous loop were computed */
-    ritz_probe loop; /* whether they are stable */
-    double radius;   /* spectral radius of the map from a step, or a sample, to
-                      the next; NaN for `exact` */
-    bool grows;      /* `radius` is above 1 by more than its error */
-    bool estimated;  /* by the growth of a vector, because the map is large */
-    double limit;    /* s: smallest step found at which the split is unstable.
-                       HUGE_VAL: none up to the duration of the run; 0: every
-                       step that was tried is unstable; NaN: not computed, as
-                       for `exact` and sampled loops */
-    bool hides;      /* the loop is unstable, but its propagation is stable: the
-                       run would decay */
+    bool known; /* whether the loop itself, continuous, is stable */
+    ritz_probe loop;
+    double
+        radius; /* spectral, of the map from a step, or a sample, to the next;
+                      of `exact` NaN */
+    bool grows; /* whether it is above 1 by more than its error */
+    bool estimated; /* by the growth of a vector, the map being too large */
+    double limit; /* s: the least step found at which the split is unstable, of
+                     those tried from `from` on upwards. HUGE_VAL: none up to
+                     a whole run; 0: the first is; NaN: not looked for, as of
+                     `exact`, sampled, late and unstable loops */
+    double from;  /* s */
+    bool late;    /* grows at finer steps too, and has a delay */
+    bool hides;   /* the loop is unstable, and the way it is propagated is
+                       not: the run would decay */
 } ritz_outlook;
 
 /**
@@ -68,10 +71,9 @@ ritz_status ritz_controlled_step(const ritz_controlled *controlled, double step,
 /**
  * Determine whether a loop is stable, and whether its propagation in time is.
  *
- * The search for `limit` starts at the step of the request. Steps grow by a
- * factor of 1.25 while they are stable, or are halved while they are unstable;
- * bisection follows. A narrow band of unstable steps below `limit` may be
- * missed, but the step of the request itself is always examined.
+ * `limit` is bracketed by steps that grow by a factor of 1.5, from a part of
+ * the shortest time constant upwards, that of the request among them, and then
+ * found by bisection: a narrow band of unstable steps below it may be missed.
  *
  * @return RITZ_ERR_ARGUMENT if the loop does not fit the model;
  *         RITZ_ERR_SINGULAR if the feedthroughs of both form a singular loop

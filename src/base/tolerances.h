@@ -809,6 +809,13 @@
    ratio and then bisected to this part of it: some 40 spectral radii in all. */
 #define RITZ_STEP_RATIO 1.5
 #define RITZ_STEP_FOUND 1e-4
+/* Steps are tried from this part of the shortest time constant on, over which a
+   held output is late by little, but from no less than the second part of the
+   step of the run, which are 17 radii more at most. */
+#define RITZ_STEP_OF_CONSTANT 0.05
+#define RITZ_STEP_LEAST       1e-3
+/* A loop that still grows at a step this many times finer does so by its delay. */
+#define RITZ_STEP_FINER 8.0
 /* A map of more numbers than 160 is applied to a vector so often, four times;
    from the first half to the second growth by powers of the count halves its
    rate, exponential growth does not. A rate below 1e-6 a step is not told from
@@ -818,6 +825,8 @@
 #define RITZ_GROWTH_KEPT  0.75
 /* A step that ends within this part of itself of the end, ends there. */
 #define RITZ_STEP_ROUNDING 1e-6
+/* A delay that whole steps miss by more than rounding is said as it is used. */
+#define RITZ_DELAY_ROUNDING 1e-12
 
 /* Full against reduced */
 

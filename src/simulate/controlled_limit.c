@@ -10,6 +10,7 @@
 #include "linear/general.h"
 #include "simulate/controlled.h"
 
+#include <complex.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -103,42 +104,68 @@ static ritz_status find_radius(const scheme *by, double step, ritz_outlook *out)
                : radius_of_growth(&march, out);
 }
 
-/* A stable step `low` and an unstable one `high`. `high` is infinite if all
-   steps up to the duration of the run are stable, `low` is 0 if all are
-   unstable. */
-static ritz_status bracket_limit(const scheme *by, const ritz_outlook *at,
-                                 double *low, double *high)
+/* Largest |pole| of a plant, or of a controller; 0 if it has none. */
+static ritz_status fastest_pole(const ritz_state_space *of, double *out)
 {
-    enum { MOST_HALVES = 30 };
-    ritz_outlook now = *at;
-    double step = by->request->step;
+    RITZ_OWN_ARRAY double _Complex *pole = NULL;
+    int64_t count = 0;
+
+    RITZ_CHECK(ritz_state_space_poles(of, &count, &pole));
+    for (int64_t k = 0; k < count; k++)
+        *out = fmax(*out, hypot(creal(pole[k]), cimag(pole[k])));
+    return RITZ_OK;
+}
+
+/* The step from which steps are tried: a part of the shortest time constant, of
+   the closed loop where its poles are known, else of the controller, and no
+   longer than the step of the run; without poles a part of that step. */
+static ritz_status first_step(const scheme *by, double fastest, double *out)
+{
+    const double least = by->request->step * RITZ_STEP_LEAST;
+
+    if (!(fastest > 0.0) && by->controlled->controller->A.nrow > 0)
+        RITZ_CHECK(fastest_pole(by->controlled->controller, &fastest));
+    *out = fastest > 0.0
+               ? fmax(fmin(by->request->step, RITZ_STEP_OF_CONSTANT / fastest),
+                      least)
+               : by->request->step / RITZ_STEP_FINER;
+    return RITZ_OK;
+}
+
+/* The first unstable one of ascending steps, and the stable one before it, 0 if
+   there is none; `high` is infinite if all up to the whole run are stable. */
+static ritz_status bracket_limit(const scheme *by, double from, double *low,
+                                 double *high)
+{
+    const double own = by->request->step;
+    double step = from;
 
     *low = 0.0;
     *high = HUGE_VAL;
-    for (int k = 0; at->grows && now.grows; k++) {
-        *high = step;
-        if (k == MOST_HALVES)
-            return RITZ_OK;
-        step *= 0.5;
+    for (;;) {
+        ritz_outlook now = {0};
+
         RITZ_CHECK(find_radius(by, step, &now));
-    }
-    *low = step;
-    while (!now.grows && !at->grows) {
+        if (now.grows) {
+            *high = step;
+            return RITZ_OK;
+        }
         *low = step;
         if (step > by->request->seconds)
             return RITZ_OK;
         step *= RITZ_STEP_RATIO;
-        RITZ_CHECK(find_radius(by, step, &now));
-        *high = now.grows ? step : *high;
+        if (*low < own && own < step)
+            step = own;
     }
-    return RITZ_OK;
 }
 
-static ritz_status find_limit(const scheme *by, ritz_outlook *out)
+static ritz_status find_limit(const scheme *by, double fastest,
+                              ritz_outlook *out)
 {
     double low = 0.0, high = 0.0;
 
-    RITZ_CHECK(bracket_limit(by, out, &low, &high));
+    RITZ_CHECK(first_step(by, fastest, &out->from));
+    RITZ_CHECK(bracket_limit(by, out->from, &low, &high));
     while (low > 0.0 && isfinite(high) && high - low > RITZ_STEP_FOUND * high) {
         const double middle = 0.5 * (low + high);
         ritz_outlook now = {0};
@@ -150,6 +177,18 @@ static ritz_status find_limit(const scheme *by, ritz_outlook *out)
             low = middle;
     }
     out->limit = low > 0.0 ? high : 0.0;
+    return RITZ_OK;
+}
+
+/* A delay that makes the loop grow does so at a finer step too. */
+static ritz_status blame_delay(const scheme *by, ritz_outlook *out)
+{
+    ritz_outlook finer = {0};
+
+    if (!out->grows)
+        return RITZ_OK;
+    RITZ_CHECK(find_radius(by, by->request->step / RITZ_STEP_FINER, &finer));
+    out->late = finer.grows;
     return RITZ_OK;
 }
 
@@ -170,7 +209,7 @@ static ritz_status find_plant(ritz_model subject, const ritz_motion *motion,
 /* Poles of a continuous loop that is not too large. */
 static ritz_status probe_loop(ritz_model subject, const ritz_motion *motion,
                               const ritz_controlled *controlled,
-                              ritz_outlook *out)
+                              double *fastest, ritz_outlook *out)
 {
     const int64_t order = 2 * motion->n + controlled->controller->A.nrow;
     const bool few = motion->form == RITZ_FORM_SPARSE
@@ -185,7 +224,23 @@ static ritz_status probe_loop(ritz_model subject, const ritz_motion *motion,
                                 controlled->loop, &closed));
     RITZ_CHECK(ritz_probe_states(&closed, &out->loop));
     out->known = true;
-    return RITZ_OK;
+    return fastest_pole(&closed, fastest);
+}
+
+/* How the split does at the step of the run and at others. */
+static ritz_status examine_split(const scheme *by, double fastest,
+                                 ritz_outlook *out)
+{
+    const ritz_controlled *controlled = by->controlled;
+
+    RITZ_CHECK(find_radius(by, by->request->step, out));
+    if (controlled->sample > 0.0)
+        return RITZ_OK;
+    if (controlled->delay > 0.0)
+        return blame_delay(by, out);
+    return out->known && out->loop.verdict == RITZ_UNSTABLE
+               ? RITZ_OK
+               : find_limit(by, fastest, out);
 }
 
 ritz_status ritz_controlled_examine(ritz_model subject,
@@ -193,21 +248,19 @@ ritz_status ritz_controlled_examine(ritz_model subject,
                                     const ritz_controlled *controlled,
                                     ritz_outlook *out)
 {
-    ritz_outlook found = {.radius = nan(""), .limit = nan("")};
+    ritz_outlook found = {.radius = nan(""), .limit = nan(""), .from = nan("")};
+    double fastest = 0.0;
     RITZ_OWN(ritz_motion) motion = {0};
     scheme by = {.request = request, .controlled = controlled};
 
     RITZ_CHECK(ritz_controlled_check(subject, request, controlled));
     RITZ_CHECK(ritz_motion_new(subject, request, &motion));
-    RITZ_CHECK(probe_loop(subject, &motion, controlled, &found));
+    RITZ_CHECK(probe_loop(subject, &motion, controlled, &fastest, &found));
     by.motion = motion; /* borrowed */
     by.motion.energies = false;
     by.motion.any_step = true;
     if (!controlled->exact)
-        RITZ_CHECK(find_radius(&by, request->step, &found));
-    if (!controlled->exact && !(controlled->sample > 0.0) &&
-        !(controlled->delay > 0.0))
-        RITZ_CHECK(find_limit(&by, &found));
+        RITZ_CHECK(examine_split(&by, fastest, &found));
     found.hides = found.known && found.loop.verdict == RITZ_UNSTABLE &&
                   !controlled->exact && !found.grows;
     *out = found;
@@ -218,15 +271,21 @@ static ritz_status refuse_step(double step, const ritz_outlook *seen)
 {
     RITZ_REFUSE_IF(
         seen->limit > 0.0, RITZ_ERR_ARGUMENT,
-        "a step of %g s makes the loop unstable, because each part holds the "
-        "output of the other: spectral radius %.8g; below %.5g s it is stable; "
-        "take it all the same with --any-step",
-        step, seen->radius, seen->limit);
+        "a step of %g s makes the loop unstable, whose parts hold each other's "
+        "outputs: spectral radius %.8g; of steps tried from %.5g s up, %.5g s "
+        "is "
+        "the least that does; take it all the same with --any-step",
+        step, seen->radius, seen->from, seen->limit);
+    RITZ_REFUSE_IF(
+        seen->limit == 0.0, RITZ_ERR_ARGUMENT,
+        "a step of %g s makes the loop unstable, whose parts hold each other's "
+        "outputs: spectral radius %.8g, and so does the least that was tried, "
+        "%.5g s; take it all the same with --any-step",
+        step, seen->radius, seen->from);
     return ritz_fail(
         RITZ_ERR_ARGUMENT,
-        "a step of %g s makes the loop unstable, because each part holds the "
-        "output of the other: spectral radius %.8g, and no step is found at "
-        "which it is stable; take it all the same with --any-step",
+        "a step of %g s makes the loop unstable, whose parts hold each other's "
+        "outputs: spectral radius %.8g; take it all the same with --any-step",
         step, seen->radius);
 }
 
@@ -255,8 +314,13 @@ ritz_status ritz_controlled_refuse(const ritz_simulation_request *request,
                    "the sampled loop is unstable, %.8g times larger after each "
                    "sample; simulate it all the same with --force",
                    outlook->radius);
-    if (controlled->sample > 0.0 || unstable || !outlook->grows ||
-        controlled->any_step)
+    RITZ_REFUSE_IF(outlook->late && !controlled->force, RITZ_ERR_ARGUMENT,
+                   "the loop is unstable with its delay of %g s, %.8g times "
+                   "more from one step to the next, and at finer steps too; "
+                   "simulate it all the same with --force",
+                   controlled->delay, outlook->radius);
+    if (controlled->sample > 0.0 || unstable || outlook->late ||
+        !outlook->grows || controlled->any_step)
         return RITZ_OK;
     return refuse_step(request->step, outlook);
 }

@@ -102,7 +102,8 @@ run_loop() {
         --controller lag.h5 --connect rate=u1 --connect y1=torque "$@" \
         reduced.h5
 }
-expect 0 'stable below' run_loop --step 1e-3 -o split.h5
+expect 0 's, the least found of those tried from' \
+    run_loop --step 1e-3 -o split.h5
 expect 0 'modal, closed loop, step' run_loop --step 1e-3 --loop exact -o exact.h5
 expect 0 'a step of 0.002 s, of which sample and delay' run_loop --step 3e-3 \
     --sample 0.01 --delay 0.004 -o sampled.h5
@@ -112,6 +113,12 @@ expect 1 'the loop is unstable, pole at' run_loop --step 1e-3 \
 expect 1 'makes the loop unstable' run_loop --step 0.5 -o none.h5
 expect 0 'it grows by' run_loop --step 0.5 --any-step -o any.h5
 expect 1 '--controller needs --step' run_loop -o none.h5
+expect 0 's is used for the 0.004000002 s given: 2 steps' run_loop \
+    --step 3e-3 --sample 0.01 --delay 0.004000002 -o late.h5
+printf '0 1 0\n10 1 0\n' >lag.tsv
+expect 1 'lag.tsv: a measured response has no states for a run in time' \
+    ritz-simulate --seconds 1 --step 1e-3 --input torque=step \
+    --controller lag.tsv reduced.h5 -o none.h5
 expect 2 'give its --controller' ritz-simulate --seconds 1 --loop exact \
     reduced.h5 -o none.h5
 

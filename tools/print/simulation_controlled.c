@@ -1,5 +1,7 @@
 /* Runs of closed loops: the joined signals, the stability of the loop, and the
    step. */
+#include "base/tolerances.h"
+#include "print/measured.h"
 #include "print/simulation.h"
 
 #include <ritz/controlled.h>
@@ -23,8 +25,7 @@ void simulation_check_loop(const cli_program *program,
                             "give its --controller");
 }
 
-/* Print the spectral radius at this step, and the step below which the split is
-   stable. */
+/* What is said of this step, and the least unstable one that was found. */
 static void say_split(cli_run *run, bool sampled, const ritz_outlook *seen)
 {
     sink_field(run, sampled ? "one sample" : "one step", "spectral_radius",
@@ -33,12 +34,20 @@ static void say_split(cli_run *run, bool sampled, const ritz_outlook *seen)
     if (isnan(seen->limit))
         return;
     if (isinf(seen->limit))
-        cli_say(run, "the split is stable at all steps up to the whole run");
+        cli_say(run,
+                "stable as it is split: at all steps that were tried, from "
+                "%.5g s up to the whole run",
+                seen->from);
     else if (seen->limit > 0.0)
-        sink_field(run, "stable below", "step_limit", "a step of %.5g s",
-                   seen->limit);
+        sink_field(run, "unstable from", "step_limit",
+                   "a step of %.5g s, the least found of those tried from "
+                   "%.5g s up",
+                   seen->limit, seen->from);
     else
-        cli_say(run, "the split is stable at no step that was tried");
+        cli_say(run,
+                "unstable as it is split: at the least step that was tried, "
+                "%.5g s",
+                seen->from);
 }
 
 static void warn_of_growth(cli_run *run, double step, const ritz_outlook *seen)
@@ -57,6 +66,11 @@ static void warn_of_growth(cli_run *run, double step, const ritz_outlook *seen)
             text, step, seen->radius);
     else if (unstable)
         cli_warn(run, "the loop is unstable, %s: it grows without bound", text);
+    else if (seen->late)
+        cli_warn(run,
+                 "the loop is unstable with its delay, at finer steps too: it "
+                 "grows by %.8g from one step to the next",
+                 seen->radius);
     else if (seen->grows)
         cli_warn(run, "it grows by %.8g from one step or sample to the next",
                  seen->radius);
@@ -84,13 +98,34 @@ static ritz_status examine(simulation_task *d,
     return RITZ_OK;
 }
 
+/* The step, and the delay as it is used: of whole steps. */
+static void say_step(cli_run *run, const ritz_controlled *controlled,
+                     double asked, double step)
+{
+    const double steps = round(controlled->delay / step);
+    const double used = steps * step;
+
+    if (step < asked)
+        cli_say(run,
+                "a step of %.8g s, of which sample and delay are multiples",
+                step);
+    if (fabs(used - controlled->delay) > RITZ_DELAY_ROUNDING * used)
+        cli_say(run,
+                "a delay of %.13g s is used for the %.13g s given: %.0f steps",
+                used, controlled->delay, steps);
+}
+
 ritz_status simulation_prepare_loop(simulation_task *task)
 {
     const loop_options *given = &task->given->loops;
     ritz_io inner = {0}; /* borrowed */
 
-    RITZ_CHECK(model_read(task->run, given->controller, MODEL_STATES,
-                          &task->controller));
+    RITZ_CHECK(measured_read(task->run, given->controller, MODEL_STATES,
+                             &task->controller));
+    RITZ_REFUSE_IF(measured_is(&task->controller), RITZ_ERR_ARGUMENT,
+                   "%s: a measured response has no states for a run in time: "
+                   "give a state space",
+                   given->controller);
     inner = ritz_model_io(model_reference(&task->controller));
     return loop_join(task->run, given, &task->io, &inner, &task->loop);
 }
@@ -113,10 +148,8 @@ ritz_status simulation_controlled(simulation_task *d,
         .force = given->loops.force};
 
     RITZ_CHECK(ritz_controlled_step(&controlled, request->step, &asked.step));
-    if (!d->told && asked.step < request->step)
-        cli_say(d->run,
-                "a step of %.8g s, of which sample and delay are multiples",
-                asked.step);
+    if (!d->told)
+        say_step(d->run, &controlled, request->step, asked.step);
     if (!d->told)
         RITZ_CHECK(examine(d, &asked, &controlled));
     d->told = true;

@@ -352,14 +352,46 @@ static void the_limit_of_an_integrator_is_two_over_its_gain(void **state)
     r.request.step = 0.7;
     assert_fails(
         ritz_simulate_controlled(r.subject, &r.request, &r.way, NULL, &s),
-        RITZ_ERR_ARGUMENT, "below 0.66");
+        RITZ_ERR_ARGUMENT, "s up, 0.66");
     r.way.any_step = true;
     simulate(&r, &s);
     assert_near(s.y[1], 0.7, 1e-14);
     assert_near(s.y[2] - 1.0 / 3.0, -1.1 * (s.y[1] - 1.0 / 3.0), 1e-14);
 }
 
-/* The limit for three masses, by bisection in NumPy on the same map. */
+/* x' = r - 3 x(t - 1): unstable as 3 > pi / 2, at whatever step. */
+static void a_delay_that_makes_a_loop_unstable_is_named(void **state)
+{
+    static const double zero = 0.0, one = 1.0, gain = 3.0;
+    static const spaces_rows integrator = {1,    1,    1,    &zero,
+                                           &one, &one, NULL, NULL};
+    static const spaces_rows gains = {0, 1, 1, NULL, NULL, NULL, &gain, NULL};
+    RITZ_OWN(rig) r = {0};
+    RITZ_OWN(ritz_simulation) s = {0};
+    ritz_outlook seen = {0};
+
+    (void)state;
+    assert_ok(spaces_make(&integrator, &r.plant));
+    assert_ok(spaces_make(&gains, &r.controller));
+    r.subject = ritz_model_of_states(&r.plant);
+    join(false, &r);
+    ask(10.0, 0.1, &r);
+    r.way.delay = 1.0;
+    r.way.any_step = true;
+    assert_ok(ritz_controlled_examine(r.subject, &r.request, &r.way, &seen));
+    assert_true(seen.late && isnan(seen.limit));
+    assert_fails(
+        ritz_simulate_controlled(r.subject, &r.request, &r.way, NULL, &s),
+        RITZ_ERR_ARGUMENT, "unstable with its delay of 1 s");
+    r.way.delay = 0.4; /* 1.2 < pi / 2 */
+    assert_ok(ritz_controlled_examine(r.subject, &r.request, &r.way, &seen));
+    assert_false(seen.late || seen.grows);
+    r.way.delay = r.request.step = 0.4; /* held for half a step besides */
+    assert_ok(ritz_controlled_examine(r.subject, &r.request, &r.way, &seen));
+    assert_true(seen.grows && !seen.late);
+}
+
+/* The three masses: found by bisection in NumPy on the same map. */
 static void the_limit_of_three_masses_is_that_of_their_map(void **state)
 {
     RITZ_OWN(rig) r = {0};
@@ -370,10 +402,14 @@ static void the_limit_of_three_masses_is_that_of_their_map(void **state)
     assert_ok(ritz_controlled_examine(r.subject, &r.request, &r.way, &seen));
     assert_near(seen.radius, 0.999315815268471, 1e-13);
     assert_near(seen.limit, 0.5193733195648383, 1e-4 * 0.52);
-    r.request.step = 1.0; /* downwards, by halves; 2 s is stable again */
-    assert_ok(ritz_controlled_examine(r.subject, &r.request, &r.way, &seen));
-    assert_true(seen.grows);
-    assert_near(seen.limit, 0.5193733195648383, 1e-4 * 0.52);
+    for (int k = 1; k <= 2; k++) { /* 2 s is stable again */
+        r.request.step = k;
+        assert_ok(
+            ritz_controlled_examine(r.subject, &r.request, &r.way, &seen));
+        assert_true(seen.grows == (k == 1));
+        assert_near(seen.limit, 0.5193733195648383, 1e-4 * 0.52);
+        assert_true(seen.from > 0.0 && seen.from < 0.05);
+    }
 }
 
 /* q'' - 0.02 q' + 1.5 q = 0.5 q with the right side held: holding delays it by
@@ -393,7 +429,7 @@ static void a_split_that_hides_an_unstable_loop_is_named(void **state)
     join(true, &r);
     ask(10.0, 0.1, &r);
     assert_ok(ritz_controlled_examine(r.subject, &r.request, &r.way, &seen));
-    assert_true(seen.known && seen.hides);
+    assert_true(seen.known && seen.hides && isnan(seen.limit));
     assert_near(seen.loop.pole[0], 0.01, 1e-14);
     assert_near(seen.radius, 1.0 - 0.00024913469006393463, 1e-13);
     assert_fails(
@@ -650,6 +686,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_split_loop_converges_at_first_order),
     cmocka_unit_test(any_integrator_moves_the_plant),
     cmocka_unit_test(the_limit_of_an_integrator_is_two_over_its_gain),
+    cmocka_unit_test(a_delay_that_makes_a_loop_unstable_is_named),
     cmocka_unit_test(the_limit_of_three_masses_is_that_of_their_map),
     cmocka_unit_test(a_split_that_hides_an_unstable_loop_is_named),
     cmocka_unit_test(a_dissipative_integrator_that_hides_it_is_named),
