@@ -584,7 +584,7 @@ static void loops_that_cannot_be_run_are_refused(void **state)
     refuse(&r, "needs an exact integrator, modal, not trapezoidal");
     r.request.integrator = &ritz_integrator_modal;
     r.way.exact = true;
-    refuse(&r, "is of a continuous controller without a delay");
+    refuse(&r, "needs a continuous controller without a delay");
     r.way = (ritz_controlled){.controller = &r.controller, .loop = &r.loop};
     r.loop.measured[0] = 7;
     refuse(&r, "the plant has no output 8");
