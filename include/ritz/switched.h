@@ -74,6 +74,9 @@ typedef struct ritz_switched_report {
     double dwell;   /* shortest with which the library is stable, s; 0: any */
     double outside; /* with RITZ_SWITCH_PROJECT: share of the initial state that
                        is M-orthogonal to the library and lost */
+    double still;   /* largest share of the kinetic energy at a switch that the
+                        new set does not move: held, or lost by projection */
+    double still_at; /* s, when that was */
 } ritz_switched_report;
 
 /**

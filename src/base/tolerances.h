@@ -1078,6 +1078,13 @@
 /* A vector of length one of which less than this is new beside others that
    were chosen gives no direction: eight digits of it would be rounding. */
 #define RITZ_SWITCH_NEW 1e-8
+/* A motion with less than this part of the largest kinetic energy has died out:
+   what a set leaves out of it does not matter. */
+#define RITZ_SWITCH_MOVES 1e-6
+/* A set that leaves more than this share of the kinetic energy out is warned
+   of: 3 % of the velocity. Runs that are as good as the fixed model of their
+   library stay below, and those that lose a rigid motion are above. */
+#define RITZ_SWITCH_STILL 1e-3
 /* A vector is an eigenvector of M, D or K if it is off by no more than this:
    iterated modes are good to the root of their residuals, 1e-16. What energy
    the rest can raise is below |D| times this a second. */

@@ -41,6 +41,9 @@ enum {
     NUM_DIAGNOSTICS,
     LARGEST = NUM_DIAGNOSTICS,
     LAST_SWITCH, /* step at which the set changed last */
+    STILL,       /* largest share of the kinetic energy that a set left out */
+    STILL_AT,    /* step at which that set began */
+    MOVING,      /* largest kinetic energy at a switch, doubled */
     NUM_TOLD,
 };
 
@@ -277,6 +280,20 @@ static void project_state(ritz_march *march, switching *s)
     march->dissipated -= change;
 }
 
+/* What of the kinetic energy a new set does not move. */
+static void note_still(const ritz_march *march, switching *s)
+{
+    const int64_t n = s->library->n;
+    const double all = ritz_motion_dot(n, march->v, march->v);
+    const double share = ritz_motion_dot(n, s->w_0, s->w_0) / all; /* or nan */
+
+    s->told[MOVING] = fmax(s->told[MOVING], all);
+    if (all <= RITZ_SWITCH_MOVES * s->told[MOVING] || share <= s->told[STILL])
+        return;
+    s->told[STILL] = share;
+    s->told[STILL_AT] = (double)march->steps;
+}
+
 static int64_t count_present(const switching *s)
 {
     int64_t count = 0;
@@ -297,6 +314,7 @@ static ritz_status change_set(ritz_march *march, switching *s)
     RITZ_CHECK(find_set(s, &s->set));
     hold_rest(&s->set, library->n, march->x, s->q_0, s->p);
     hold_rest(&s->set, library->n, march->v, s->w_0, s->v);
+    note_still(march, s);
     if (s->switched->jump == RITZ_SWITCH_PROJECT)
         project_state(march, s);
     s->told[SWITCHES] += 1.0;
@@ -642,6 +660,8 @@ static void fill_report(const ritz_march *march, const ritz_library *library,
     report->num_fallbacks = (int64_t)s->told[FALLBACKS];
     report->vector_steps = s->told[VECTOR_STEPS];
     report->outside = library->outside;
+    report->still = s->told[STILL];
+    report->still_at = s->told[STILL_AT] * march->step;
 }
 
 /* It has the name of the run only: `modal` propagates the sets. */

@@ -3,6 +3,7 @@
 
 #include "base/alloc.h"
 #include "base/text.h"
+#include "base/tolerances.h"
 
 #include <ritz/import.h>
 #include <ritz/switched.h>
@@ -143,6 +144,26 @@ ritz_status simulation_switched_prepare(simulation_task *task)
     return RITZ_OK;
 }
 
+/* What sets left out although it moved. */
+static void say_still(cli_run *run, const ritz_switched *asked,
+                      const ritz_switched_report *r)
+{
+    const bool offset = asked->jump == RITZ_SWITCH_OFFSET;
+
+    sink_field(
+        run, "left out", "left_out,left_out_at",
+        "a share of %.2g of the kinetic energy, by the set that begins at "
+        "%.6g s",
+        r->still, r->still_at);
+    if (r->still > RITZ_SWITCH_STILL)
+        cli_warn(
+            run,
+            "the set that begins at %.6g s leaves out %.3g %% of the kinetic "
+            "energy, which %s: an --indicator nearer to 1 leaves out less",
+            r->still_at, 100.0 * r->still,
+            offset ? "stands still from then on" : "is lost");
+}
+
 static void say_report(cli_run *run, const ritz_switched *asked,
                        const ritz_switched_report *r, const ritz_simulation *s)
 {
@@ -167,6 +188,7 @@ static void say_report(cli_run *run, const ritz_switched *asked,
                    "the energy is a common Lyapunov function of all sets, "
                    "which the library meets to %.1e",
                    r->defect);
+    say_still(run, asked, r);
     if (r->outside > 0.0)
         cli_warn(run,
                  "%.2g of the initial state is outside the library, and is "

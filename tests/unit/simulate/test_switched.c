@@ -559,7 +559,8 @@ static void requests_without_sense_are_refused(void **state)
     assert_fails(try_run(&r), RITZ_ERR_ARGUMENT, "are not stored");
     r.request.coordinates = false;
     r.switched.dwell = -1.0;
-    assert_fails(try_run(&r), RITZ_ERR_ARGUMENT, "a dwell of -1 s is not within 0 and");
+    assert_fails(try_run(&r), RITZ_ERR_ARGUMENT,
+                 "a dwell of -1 s is not within 0 and");
     r.switched.dwell = 0.0;
     r.switched.jump = RITZ_SWITCH_PROJECT;
     r.switched.inner = RITZ_SWITCH_EUCLIDEAN;
@@ -760,6 +761,42 @@ static void a_force_that_begins_with_the_run_is_found(void **state)
     }
 }
 
+/* Two oscillators beside each other, of which the slow one is dropped although
+   it has all of the kinetic energy. */
+static void what_a_set_leaves_out_is_told(void **state)
+{
+    static const double m[] = {1.0, 1.0}, k[] = {0.0, 1e6};
+    static const double v0[] = {1.0, 0.0};
+    RITZ_OWN(motions) row = {0};
+    RITZ_OWN(ritz_dense) library = {0};
+    RITZ_OWN(ritz_simulation) s = {0};
+    ritz_simulation_request request = asking(0.01, 1e-4, NULL);
+    const double x0[] = {0.0, 1e-5};
+    ritz_switched switched = {.num_libraries = 1,
+                              .library = &library,
+                              .interval = 1e-3,
+                              .least = 0.9};
+    ritz_switched_report report = {0};
+
+    (void)state;
+    assert_ok(motions_row(2, m, k, NULL, &row));
+    memset(row.K.val, 0, 4 * sizeof(double));
+    row.K.val[3] = 1e6; /* the first is free, the second alone */
+    assert_ok(ritz_dense_identity(2, &library));
+    request.x0 = x0;
+    request.v0 = v0;
+    assert_ok(
+        ritz_simulate_switched(row.dense, &request, &switched, &report, &s));
+    /* R = [1, w; 0, -1e6 x] begins as [1, 0; 0, -10] */
+    assert_near(report.still, 1.0, 1e-15);
+    assert_true(report.still_at == 0.0);
+    switched.least = 1.0 - 1e-9;
+    ritz_simulation_free(&s);
+    assert_ok(
+        ritz_simulate_switched(row.dense, &request, &switched, &report, &s));
+    assert_true(report.still == 0.0);
+}
+
 /* --- runs that are ended early, and failing allocations ------------------- */
 
 static bool count_down(void *context)
@@ -861,6 +898,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(hysteresis_switches_less),
     cmocka_unit_test(a_residual_of_zero_changes_no_set),
     cmocka_unit_test(a_force_that_begins_with_the_run_is_found),
+    cmocka_unit_test(what_a_set_leaves_out_is_told),
     cmocka_unit_test(a_switched_run_is_continued_bit_for_bit),
     cmocka_unit_test(a_switched_run_survives_every_allocation),
 };
