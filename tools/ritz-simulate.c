@@ -140,7 +140,7 @@ static const cli_program program = {
 
 /* A joint of a scene that moves during the run. */
 #define SWEEP_OPTIONS(it)                                                      \
-    CLI_TEXT("sweep", &(it)->sweep, "JOINT=FROM:TO:TIME[s][:smooth]",          \
+    CLI_LIST("sweep", &(it)->sweeps, "JOINT=FROM:TO:TIME[s][:smooth]",         \
              "turn a joint of a scene during the run, in degrees and "         \
              "seconds, or as a file of times and settings says"),              \
         CLI_WORD("sweep-basis", &(it)->sweep_basis,                            \

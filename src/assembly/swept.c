@@ -26,6 +26,10 @@
    between knots is refused; and at most. */
 enum { FEWEST = 8, ENOUGH = 128, MOST = 1024 };
 
+/* Degrees between the first settings of a hinge, at most: from settings that are
+   whole turns apart, neither its axis nor an error of the spline is seen. */
+enum { COARSEST = 45 };
+
 /* The system at one setting. */
 typedef struct sweep_knot {
     double x;
@@ -60,6 +64,7 @@ typedef struct sweeper {
     const ritz_stage *stage;
     const ritz_sweep_request *asked;
     double unit, first, last; /* of x */
+    int64_t fewest;           /* intervals at first */
 } sweeper;
 
 static const char *sweep_name(const sweeper *w)
@@ -118,15 +123,34 @@ static ritz_status make_knots(const sweeper *w, int64_t count, const double *x,
     return RITZ_OK;
 }
 
-/* The first grid, of FEWEST intervals. */
+static ritz_status choose_fewest(sweeper *w)
+{
+    const double *range = w->asked->range;
+    const double wanted = ceil((range[1] - range[0]) / COARSEST);
+
+    w->fewest = FEWEST;
+    if (!w->stage->scene->sweep[w->asked->sweep].turns)
+        return RITZ_OK;
+    RITZ_REFUSE_IF(wanted > MOST, RITZ_ERR_ARGUMENT,
+                   "'%s' turns from %g to %g degrees: there are at most %d "
+                   "settings, %d degrees apart. Turn it by less",
+                   sweep_name(w), range[0], range[1], MOST + 1, COARSEST);
+    if (wanted > FEWEST)
+        w->fewest = (int64_t)wanted;
+    return RITZ_OK;
+}
+
+/* The first grid, of w->fewest intervals. */
 static ritz_status begin_grid(const sweeper *w, sweep_grid *out)
 {
-    double x[FEWEST + 1];
+    const double spacing = (w->last - w->first) / (double)w->fewest;
+    RITZ_OWN_ARRAY double *x = NULL;
 
-    out->count = FEWEST + 1;
+    out->count = w->fewest + 1;
     RITZ_CHECK_NEW(out->knot, out->count);
+    RITZ_CHECK_NEW(x, out->count);
     for (int64_t k = 0; k < out->count; k++)
-        x[k] = w->first + (w->last - w->first) * (double)k / FEWEST;
+        x[k] = w->first + spacing * (double)k;
     return make_knots(w, out->count, x, out->knot);
 }
 
@@ -438,12 +462,15 @@ static ritz_status refuse_gap(const sweeper *w, const sweep_grid *grid,
 static ritz_status refine(const sweeper *w, sweep_grid *grid,
                           ritz_swept_model *m)
 {
+    const int64_t enough = w->fewest * (ENOUGH / FEWEST);
+
     while (true) {
         RITZ_OWN(sweep_grid) middles = {0};
         sweep_gap gap;
 
         RITZ_CHECK(align_knots(w, grid, m, &gap));
-        if (grid->count > ENOUGH && gap.overlap < RITZ_SWEPT_OVERLAP)
+        if ((grid->count > enough || grid->count > MOST) &&
+            gap.overlap < RITZ_SWEPT_OVERLAP)
             return refuse_gap(w, grid, m->order, &gap);
         RITZ_CHECK(make_middles(w, grid, &middles));
         RITZ_CHECK(check_ranks(w, &middles));
@@ -668,6 +695,7 @@ ritz_status ritz_stage_sweep(const ritz_stage *stage,
     m.has_ratios = asked->damping && asked->damping->kind != RITZ_DAMPING_NONE;
     RITZ_CHECK(stack_bodies(&w, &m));
     RITZ_CHECK(list_springs(&w, &m));
+    RITZ_CHECK(choose_fewest(&w));
     RITZ_CHECK(begin_grid(&w, &grid));
     RITZ_CHECK(check_ranks(&w, &grid));
     RITZ_CHECK(choose_order(&w, &grid, &m.order));

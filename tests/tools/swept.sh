@@ -51,6 +51,11 @@ expect 0 'JOINT=FROM:TO:TIME' ritz-simulate --help
         --sweep-modes 14 $run -o no.h5
     expect 2 '--damper has no effect' ritz-simulate --sweep clock=0:60:4s \
         --damper a=1 $run -o no.h5
+    expect 2 '--sweep is given twice: one joint moves' ritz-simulate \
+        --sweep clock=0:60:4s --sweep cone=0:10:4s $run -o no.h5
+    expect 2 '--sweep-modes has no effect on a basis of all modes' \
+        ritz-simulate --sweep clock=0:60:4s --sweep-basis full \
+        --sweep-modes 14 $run -o no.h5
     expect 1 'fewer than the 8 rigid motions' ritz-simulate \
         --sweep clock=0:60:4s --sweep-modes 3 $run -o no.h5
 }

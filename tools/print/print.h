@@ -365,6 +365,7 @@ typedef struct simulation_options {
     const char *way;      /* how it is propagated, "split" or "exact" */
     double sample, delay; /* of a sampled controller, s; 0: not sampled */
     bool discrete;
+    cli_list sweeps;   /* as given: one at most */
     const char *sweep; /* "JOINT=PATH"; NULL: no joint moves */
     const char *sweep_basis, *sweep_against; /* rows of simulation_swept.c */
     int64_t sweep_modes;                     /* 0: not given */

@@ -49,18 +49,34 @@ static ritz_status parse_path(const char *text, ritz_path *out)
     return ritz_path_parse(equals + 1, out);
 }
 
+/* Refuse a number of modes that no basis of the run is cut to. */
+static void check_modes(const cli_run *run, const simulation_options *given)
+{
+    const char *against = given->sweep_against;
+
+    if (given->sweep_modes > 0 && !find_basis(given->sweep_basis)->cut &&
+        !(against && find_basis(against)->cut))
+        cli_refuse(run->program,
+                   "--sweep-modes has no effect on a basis of all modes");
+}
+
 ritz_status simulation_sweep_prepare(cli_run *run, simulation_options *given)
 {
     const char *at = given->model.at ? given->model.at : "";
     RITZ_OWN(ritz_path) path = {0};
     int length = 0;
 
+    if (given->sweeps.count > 1)
+        cli_refuse(run->program, "--sweep is given twice: one joint moves");
+    if (given->sweeps.count > 0)
+        given->sweep = given->sweeps.text[0];
     if (!given->sweep) {
         if (given->sweep_against || given->sweep_modes > 0 ||
             strcmp(given->sweep_basis, "switched") != 0)
             cli_refuse(run->program, "--sweep-... needs --sweep");
         return RITZ_OK;
     }
+    check_modes(run, given);
     RITZ_REFUSE_IF(ritz_container_seems(run->operand[0]), RITZ_ERR_ARGUMENT,
                    "'%s' is no scene, whose joints move", run->operand[0]);
     RITZ_CHECK(parse_path(given->sweep, &path));
@@ -153,6 +169,10 @@ static double fastest_rate(const ritz_swept_model *m, const ritz_path *path)
 static void say_model(cli_run *run, bool main, const sweep_basis *basis,
                       const ritz_swept_model *m, const ritz_path *path)
 {
+    const double lowest = 2.0 * RITZ_PI * m->start_hz[0];
+    const double ratio =
+        m->unit != 1.0 && lowest > 0.0 ? fastest_rate(m, path) / lowest : 0.0;
+
     sink_field(run, "basis", main ? "basis,modes,settings,,interpolation" : "",
                "%s: %" PRId64 " modes, computed at %" PRId64
                " settings of %s, interpolated to %.1e",
@@ -160,8 +180,12 @@ static void say_model(cli_run *run, bool main, const sweep_basis *basis,
     if (main && m->unit != 1.0 && m->start_hz[0] > 0.0)
         sink_field(run, "rate", "rate,rate_ratio",
                    "%.3g rad/s, %.2e of the lowest mode's",
-                   fastest_rate(m, path),
-                   fastest_rate(m, path) / (2.0 * RITZ_PI * m->start_hz[0]));
+                   fastest_rate(m, path), ratio);
+    if (main && ratio >= 1.0)
+        cli_warn(run,
+                 "the joint turns at %.3g times the lowest frequency: forces "
+                 "that are left out are of the square of that",
+                 ratio);
 }
 
 /* Largest difference of the mechanical energy, relative to its largest

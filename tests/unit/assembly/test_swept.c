@@ -302,7 +302,34 @@ static void no_allocation_failure_leaks(void **state)
     assert_survives_allocations(7, swing_once(&m));
 }
 
+/* Nine settings over 16 turns would all be one position, two turns apart. */
+static void whole_turns_have_the_terms_of_a_part_of_one(void **state)
+{
+    const double turns[] = {1440.0, 5760.0};
+    const ritz_sweep_request part = moving_sweep(&pendulum_start, 10.0, 100.0);
+    RITZ_OWN(moving) m = {0};
+    RITZ_OWN(ritz_swept_model) expected = {0};
+
+    (void)state;
+    assert_ok(make_pendulum(1.0, &m));
+    assert_ok(ritz_stage_sweep(&m.stage, &part, &expected));
+    assert_true(ritz_dense_max(&expected.H) > 0.1);
+    for (int k = 0; k < 2; k++) {
+        const ritz_sweep_request asked =
+            moving_sweep(&pendulum_start, 10.0, 10.0 + turns[k]);
+        RITZ_OWN(ritz_swept_model) model = {0};
+
+        assert_ok(ritz_stage_sweep(&m.stage, &asked, &model));
+        assert_true(model.spacing <= RITZ_PI / 4.0 + 1e-12);
+        ritz_dense_add(-1.0, &expected.G, &model.G);
+        ritz_dense_add(-1.0, &expected.H, &model.H);
+        assert_true(ritz_dense_max(&model.G) < 1e-9);
+        assert_true(ritz_dense_max(&model.H) < 1e-9);
+    }
+}
+
 static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(whole_turns_have_the_terms_of_a_part_of_one),
     cmocka_unit_test(a_pendulum_keeps_its_plane_in_space),
     cmocka_unit_test(without_the_terms_the_plane_turns_with_the_body),
     cmocka_unit_test(accelerations_are_those_of_the_coordinates),
