@@ -38,7 +38,7 @@ int main(int argc, char **argv)
         CLI_TEXT("structural-damping", &it->structural_damping, "F",
                  "structural damping K4, of K + i K4"),
         CLI_LIST("geometric-stiffness", &given.load, "F@LOAD",
-                 "K_g for a unit of LOAD: stored, no tool uses it yet"),
+                 "K_g for a unit of LOAD, tension positive"),
         CLI_TEXT("superelement", &given.superelement, "F.op4",
                  "all of these of NASTRAN's EXTSEOUT, rows by F.pch or F.asm"),
         CLI_TEXT("bulk", &it->bulk, "F",
