@@ -228,15 +228,6 @@ static ritz_status add_point(const table_columns *c, const double *value,
     return RITZ_OK;
 }
 
-static int64_t count_lines(const char *text)
-{
-    int64_t count = 1;
-
-    for (; *text; text++)
-        count += *text == '\n';
-    return count;
-}
-
 static ritz_status make_room(const table_columns *c, int64_t rows,
                              ritz_response *r)
 {
@@ -281,7 +272,7 @@ static ritz_status find_columns(char **text, int64_t *number, table_columns *c)
 static ritz_status parse_table(char *text, ritz_response *out)
 {
     int64_t number = 0;
-    const int64_t rows = count_lines(text);
+    const int64_t rows = ritz_text_lines(text);
     RITZ_OWN(table_columns) c = {0};
     RITZ_OWN(ritz_response) r = {0};
     RITZ_OWN_ARRAY double *value = NULL;

@@ -100,6 +100,15 @@ ritz_status ritz_name_copy(const char *name, char out[RITZ_NAME_SIZE])
     return RITZ_OK;
 }
 
+int64_t ritz_text_lines(const char *text)
+{
+    int64_t count = 1;
+
+    for (; *text; text++)
+        count += *text == '\n';
+    return count;
+}
+
 ritz_status ritz_path_folder(const char *path, char **out)
 {
     const char *slash = strrchr(path, '/');

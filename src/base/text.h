@@ -40,6 +40,9 @@ int ritz_letter_size(const char *text);
  * a terminal could obey them. */
 void ritz_text_clean(char *text);
 
+/** One more than the line ends of a text: room for all of its lines. */
+int64_t ritz_text_lines(const char *text);
+
 /** The folder of a path: "." if it names none. The caller frees @p out. */
 ritz_status ritz_path_folder(const char *path, char **out);
 

@@ -3,6 +3,7 @@
 
 #include "base/alloc.h"
 #include "base/search.h"
+#include "base/text.h"
 #include "base/tolerances.h"
 
 #include <ritz/base.h>
@@ -114,15 +115,6 @@ static ritz_status parse_line(char *line, int64_t number, bool *any,
     return RITZ_OK;
 }
 
-static int64_t count_lines(const char *text)
-{
-    int64_t count = 1;
-
-    for (; *text; text++)
-        count += *text == '\n';
-    return count;
-}
-
 static ritz_status read_table(const char *path, ritz_signal *out)
 {
     RITZ_OWN(ritz_signal)
@@ -132,8 +124,8 @@ static ritz_status read_table(const char *path, ritz_signal *out)
     int64_t number = 0;
 
     RITZ_CHECK(ritz_text_read(path, &text));
-    RITZ_CHECK_NEW(signal.time, count_lines(text));
-    RITZ_CHECK_NEW(signal.value, count_lines(text));
+    RITZ_CHECK_NEW(signal.time, ritz_text_lines(text));
+    RITZ_CHECK_NEW(signal.value, ritz_text_lines(text));
     for (line = text; line;) {
         char *end = strchr(line, '\n');
         double pair[2] = {0.0, 0.0};
