@@ -19,7 +19,6 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "linear/general.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -60,23 +59,12 @@ static const char *const diagnostics[] = {
     "energy gained at switches",
 };
 
-/* The model of the present set. */
-typedef struct set_model {
-    bool made;
-    ritz_motion motion; /* p; the last input is the constant load */
-    ritz_march march;
-    int64_t *at; /* numbers of the vectors, if they are orthonormal modes; UX is
-                    then not needed. NULL: they are not */
-    ritz_dense UX;       /* span x r */
-    double *damped_hold; /* r: X'U'D w_0 */
-} set_model;
-
 typedef struct switching {
     const ritz_library *library;
     const ritz_switched *switched;
     const ritz_simulation_request *request;
     int64_t steps_between, steps_kept; /* in interval and dwell */
-    set_model set;
+    ritz_set_model set;
     ritz_choosing choosing;
     ritz_residue residue;
     double *told, *q_0, *w_0, *p, *v; /* parts of memory */
@@ -87,20 +75,11 @@ typedef struct switching {
     double *acceleration; /* n */
 } switching;
 
-static void set_model_free(set_model *set)
-{
-    ritz_march_free(&set->march);
-    ritz_motion_free(&set->motion);
-    ritz_dense_free(&set->UX);
-    RITZ_FREE(set->at, set->damped_hold);
-    *set = (set_model){0};
-}
-
 static void release_switching(void *own)
 {
     switching *s = own;
 
-    set_model_free(&s->set);
+    ritz_set_model_free(&s->set);
     ritz_dense_free(&s->choosing.rest);
     ritz_dense_free(&s->Ca);
     RITZ_FREE(s->choosing.next, s->choosing.share, s->residue.x, s->residue.v,
@@ -108,129 +87,11 @@ static void release_switching(void *own)
               s->residue.ahead, s->acceleration, s);
 }
 
-/* out = X'U'y, for the part of y in the span of the library. */
-static void restrict_to_set(const set_model *set, const double *y, double *out)
-{
-    const int64_t r = set->motion.n;
-
-    for (int64_t i = 0; i < r; i++)
-        out[i] = set->at ? y[set->at[i]]
-                         : ritz_motion_dot(set->UX.nrow,
-                                           ritz_dense_col(&set->UX, i), y);
-}
-
-/* x = x_0 + U X p */
-static void expand_set(const set_model *set, const double *x_0, const double *p,
-                       int64_t n, double *x)
-{
-    if (set->at) {
-        for (int64_t i = 0; i < set->motion.n; i++)
-            x[set->at[i]] = p[i]; /* x_0 is 0 here; other rows are held */
-        return;
-    }
-    memcpy(x, x_0, (size_t)n * sizeof *x);
-    ritz_motion_gemv(&set->UX, 1.0, p, x);
-}
-
-/* Whether a matrix is diagonal. */
-static bool is_diagonal(const ritz_dense *A)
-{
-    for (int64_t j = 0; j < A->ncol; j++)
-        for (int64_t i = 0; i < A->nrow; i++)
-            if (i != j && ritz_dense_col(A, j)[i] != 0.0)
-                return false;
-    return true;
-}
-
-/* If the library consists of modes, those of the set are among them: fill `at`,
-   Lambda and D by their numbers. */
-static ritz_status take_modes(const switching *s, set_model *set, bool *taken)
-{
-    const ritz_library *library = s->library;
-    int64_t r = 0;
-    RITZ_OWN(ritz_dense) K = {0};
-    RITZ_OWN_ARRAY int64_t *at = NULL;
-
-    *taken = false;
-    if (library->redundant)
-        return RITZ_OK;
-    RITZ_CHECK_NEW(at, library->span);
-    for (int64_t k = 0; k < library->num_vectors; k++)
-        if (s->choosing.present[k] != 0.0)
-            at[r++] = k;
-    RITZ_CHECK(ritz_dense_principal(&library->K, r, at, &K));
-    if (!is_diagonal(&K))
-        return RITZ_OK;
-    set->motion.n = r;
-    RITZ_CHECK_NEW(set->motion.lambda, r);
-    for (int64_t k = 0; k < r; k++)
-        set->motion.lambda[k] = ritz_dense_col(&K, k)[k];
-    RITZ_CHECK(ritz_dense_principal(&library->D, r, at, &set->motion.D));
-    RITZ_MOVE(set->at, at);
-    *taken = true;
-    return RITZ_OK;
-}
-
-/* Modes of U'K U. */
-static ritz_status find_modes(const switching *s, set_model *set)
-{
-    const ritz_library *library = s->library;
-    const int64_t n = library->span;
-    RITZ_OWN(ritz_dense) U = {0}, part = {0}, K = {0};
-    RITZ_OWN(ritz_pairs) pairs = {0};
-
-    RITZ_CHECK(ritz_library_columns(library, s->choosing.present, &U));
-    RITZ_CHECK(ritz_dense_block(&library->K, 0, n, 0, n, &part));
-    RITZ_CHECK(ritz_dense_congruence(&part, &U, &K));
-    RITZ_CHECK(ritz_general_symmetric(&K, &pairs));
-    RITZ_CHECK(ritz_dense_mul(&U, &pairs.Phi, &set->UX));
-    set->motion.n = U.ncol;
-    RITZ_MOVE(set->motion.lambda, pairs.lambda);
-    ritz_dense_free(&part);
-    RITZ_CHECK(ritz_dense_block(&library->D, 0, n, 0, n, &part));
-    return ritz_dense_project(&part, &set->UX, &set->motion.D);
-}
-
-/* [X'U'B, -X'U'(K q_0 + D w_0)], and X'U'D w_0. */
-static ritz_status fill_inputs(const switching *s, set_model *set)
-{
-    const ritz_library *library = s->library;
-    const int64_t m = library->B.ncol, r = set->motion.n;
-    RITZ_OWN_ARRAY double *held = NULL;
-
-    RITZ_CHECK_NEW(held, library->n);
-    RITZ_CHECK_NEW(set->damped_hold, r);
-    RITZ_CHECK(ritz_dense_new(r, m + 1, &set->motion.B));
-    for (int64_t j = 0; j < m; j++)
-        restrict_to_set(set, ritz_dense_col(&library->B, j),
-                        ritz_dense_col(&set->motion.B, j));
-    ritz_motion_gemv(&library->D, 1.0, s->w_0, held);
-    restrict_to_set(set, held, set->damped_hold);
-    ritz_motion_gemv(&library->K, 1.0, s->q_0, held);
-    restrict_to_set(set, held, ritz_dense_col(&set->motion.B, m));
-    for (int64_t i = 0; i < r; i++) {
-        double *load = &ritz_dense_col(&set->motion.B, m)[i];
-
-        *load = -*load - set->damped_hold[i];
-    }
-    return RITZ_OK;
-}
-
-/* The vectors and modes of the set `present`. The constant load is added by
-   finish_set, once q_0 and w_0 are known. */
-static ritz_status find_set(const switching *s, set_model *set)
-{
-    bool taken = false;
-
-    RITZ_CHECK(take_modes(s, set, &taken));
-    return taken ? RITZ_OK : find_modes(s, set);
-}
-
 static ritz_status finish_set(ritz_march *march, switching *s)
 {
-    set_model *set = &s->set;
+    ritz_set_model *set = &s->set;
 
-    RITZ_CHECK(fill_inputs(s, set));
+    RITZ_CHECK(ritz_set_model_load(s->library, s->q_0, s->w_0, set));
     set->motion.form = RITZ_FORM_MODAL;
     set->motion.energies = march->motion->energies;
     RITZ_CHECK(ritz_march_new(&set->motion, &ritz_integrator_modal, march->step,
@@ -239,22 +100,6 @@ static ritz_status finish_set(ritz_march *march, switching *s)
     memcpy(set->march.v, s->v, (size_t)set->motion.n * sizeof *s->v);
     set->made = true;
     return RITZ_OK;
-}
-
-/* p = X'U'y, and y_0 = y - U X p. */
-static void hold_rest(const set_model *set, int64_t n, const double *y,
-                      double *y_0, double *p)
-{
-    memcpy(y_0, y, (size_t)n * sizeof *y);
-    restrict_to_set(set, y, p);
-    if (!set->at) {
-        for (int64_t i = 0; i < set->motion.n; i++)
-            for (int64_t k = 0; k < set->UX.nrow; k++)
-                y_0[k] -= ritz_dense_col(&set->UX, i)[k] * p[i];
-        return;
-    }
-    for (int64_t i = 0; i < set->motion.n; i++)
-        y_0[set->at[i]] = 0.0;
 }
 
 /* Set q_0 and w_0 to zero; note the jump, and the change of energy. */
@@ -310,10 +155,10 @@ static ritz_status change_set(ritz_march *march, switching *s)
 
     memcpy(s->choosing.present, s->choosing.next,
            (size_t)library->num_vectors * sizeof(double));
-    set_model_free(&s->set);
-    RITZ_CHECK(find_set(s, &s->set));
-    hold_rest(&s->set, library->n, march->x, s->q_0, s->p);
-    hold_rest(&s->set, library->n, march->v, s->w_0, s->v);
+    ritz_set_model_free(&s->set);
+    RITZ_CHECK(ritz_set_model_new(s->library, s->choosing.present, &s->set));
+    ritz_set_model_hold(&s->set, library->n, march->x, s->q_0, s->p);
+    ritz_set_model_hold(&s->set, library->n, march->v, s->w_0, s->v);
     note_still(march, s);
     if (s->switched->jump == RITZ_SWITCH_PROJECT)
         project_state(march, s);
@@ -380,7 +225,7 @@ static ritz_status switch_set(ritz_march *march, switching *s, const double *u0)
 /* Advance the present set by a step, and add its work and dissipation. */
 static ritz_status advance_set(ritz_march *march, switching *s)
 {
-    set_model *set = &s->set;
+    ritz_set_model *set = &s->set;
     ritz_march *inner = &set->march;
     const int64_t r = set->motion.n, n = s->library->n;
     const double *load = ritz_dense_col(&set->motion.B, s->library->B.ncol);
@@ -398,8 +243,8 @@ static ritz_status advance_set(ritz_march *march, switching *s)
     }
     memcpy(s->p, inner->x, (size_t)r * sizeof *s->p);
     memcpy(s->v, inner->v, (size_t)r * sizeof *s->v);
-    expand_set(set, s->q_0, s->p, n, march->x);
-    expand_set(set, s->w_0, s->v, n, march->v);
+    ritz_set_model_expand(set, s->q_0, s->p, n, march->x);
+    ritz_set_model_expand(set, s->w_0, s->v, n, march->v);
     s->told[VECTOR_STEPS] += (double)r;
     return RITZ_OK;
 }
@@ -411,7 +256,8 @@ static ritz_status advance_switched(ritz_march *march, const double *u0,
     const int64_t m = s->library->B.ncol;
 
     if (!s->set.made && s->told[SWITCHES] > 0.0) { /* the run was continued */
-        RITZ_CHECK(find_set(s, &s->set));
+        RITZ_CHECK(
+            ritz_set_model_new(s->library, s->choosing.present, &s->set));
         RITZ_CHECK(finish_set(march, s));
     }
     if (march->steps % s->steps_between == 0)
@@ -445,7 +291,7 @@ static void diagnose(const ritz_march *march, double *out)
 /* Accelerations of the present set; q_0 and w_0 are constant. */
 static void find_acceleration(const switching *s, const double *u, double *a)
 {
-    const set_model *set = &s->set;
+    const ritz_set_model *set = &s->set;
     const int64_t r = set->made ? set->motion.n : 0, m = s->library->B.ncol;
 
     memset(a, 0, (size_t)s->library->n * sizeof *a);

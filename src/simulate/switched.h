@@ -89,4 +89,35 @@ double ritz_present_indicator(const ritz_library *library,
 ritz_status ritz_library_columns(const ritz_library *library,
                                  const double *present, ritz_dense *U);
 
+/* The model of a set: U X p, X the modes of U'K U, of the columns U that span
+   its vectors. */
+typedef struct ritz_set_model {
+    bool made;
+    ritz_motion motion; /* p; the last input is the constant load */
+    ritz_march march;
+    int64_t *at; /* numbers of the vectors, if they are orthonormal modes; UX is
+                    then not needed. NULL: they are not */
+    ritz_dense UX;       /* span x r */
+    double *damped_hold; /* r: X'U'D w_0 */
+} ritz_set_model;
+
+/** The modes of the set of vectors whose `present` is not 0. Its inputs are
+ * filled by ritz_set_model_load. */
+ritz_status ritz_set_model_new(const ritz_library *library,
+                               const double *present, ritz_set_model *out);
+void ritz_set_model_free(ritz_set_model *set);
+
+/** Fill the inputs: those of the library, and the constant load of q_0 and
+ * w_0. */
+ritz_status ritz_set_model_load(const ritz_library *library, const double *q_0,
+                                const double *w_0, ritz_set_model *set);
+
+/** x = x_0 + U X p. */
+void ritz_set_model_expand(const ritz_set_model *set, const double *x_0,
+                           const double *p, int64_t n, double *x);
+
+/** p = X'U'y, and y_0 = y - U X p. */
+void ritz_set_model_hold(const ritz_set_model *set, int64_t n, const double *y,
+                         double *y_0, double *p);
+
 #endif
