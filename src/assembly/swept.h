@@ -1,0 +1,76 @@
+/* The steps of ritz_stage_sweep: bases at some settings of a joint, which are
+   aligned with each other and interpolated. */
+#ifndef RITZ_ASSEMBLY_SWEPT_H
+#define RITZ_ASSEMBLY_SWEPT_H
+
+#include "assembly/assembly.h"
+#include "simulate/swept.h"
+
+/* Numbers of intervals: at first, and at most. */
+enum { RITZ_SWEEP_FEWEST = 8, RITZ_SWEEP_MOST = 1024 };
+
+/* The system at one setting. */
+typedef struct ritz_sweep_knot {
+    double x;
+    int64_t rank, rigid;
+    ritz_dense V;   /* Q x e, modes */
+    ritz_dense SV;  /* springs x e */
+    double *lambda; /* e */
+    ritz_dense places;
+} ritz_sweep_knot;
+
+typedef struct ritz_sweep_grid {
+    int64_t count;
+    ritz_sweep_knot *knot; /* count, x ascending */
+} ritz_sweep_grid;
+
+typedef struct ritz_sweeper {
+    const ritz_stage *stage;
+    const ritz_sweep_request *asked;
+    double unit, first, last; /* of x */
+    int64_t fewest;           /* intervals at first */
+} ritz_sweeper;
+
+static inline const char *ritz_sweep_name(const ritz_sweeper *w)
+{
+    return w->stage->scene->sweep[w->asked->sweep].name;
+}
+
+void ritz_sweep_grid_free(ritz_sweep_grid *grid);
+
+/** Choose the number of intervals at first, and compute the first grid. */
+ritz_status ritz_sweep_begin(ritz_sweeper *w, ritz_sweep_grid *out);
+
+/** Knots half way between those of a grid. */
+ritz_status ritz_sweep_middles(const ritz_sweeper *w,
+                               const ritz_sweep_grid *grid,
+                               ritz_sweep_grid *out);
+
+/** Merge both grids into @p grid; the other one is left empty. */
+ritz_status ritz_sweep_merge(ritz_sweep_grid *grid, ritz_sweep_grid *middles);
+
+/** A grid of one knot, at x. */
+ritz_status ritz_sweep_one(const ritz_sweeper *w, double x,
+                           ritz_sweep_grid *out);
+
+/** Modes of a knot up to the band's end. */
+int64_t ritz_sweep_count_modes(const ritz_sweep_knot *k, double up_to_hz);
+
+/** Refuse a grid on which the rank of the constraints changes, or on which a
+ * mode leaves or enters the band. */
+ritz_status ritz_sweep_check(const ritz_sweeper *w,
+                             const ritz_sweep_grid *grid);
+
+/** V'M T, V the r modes of a knot. */
+ritz_status ritz_sweep_correlate(const ritz_dense *V, const ritz_dense *M,
+                                 const ritz_dense *T, ritz_dense *out);
+
+/** G and H of a model, if any body turns. */
+ritz_status ritz_sweep_turning(const ritz_sweeper *w,
+                               const ritz_sweep_grid *grid,
+                               ritz_swept_model *m);
+
+/** The map from x0 to q at the start, and the frequencies there. */
+ritz_status ritz_sweep_start(const ritz_sweeper *w, ritz_swept_model *m);
+
+#endif
