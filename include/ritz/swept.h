@@ -74,6 +74,9 @@ typedef struct ritz_swept_model {
     ritz_io io;         /* for Q */
     ritz_dense start;   /* e x r: q = start' x0, with x0 in all e modes of the
                            system at the start */
+    ritz_dense start_B; /* e x inputs, in the same modes */
+    int64_t start_rigid;  /* how many of these modes are rigid motions */
+    double *start_lambda; /* e: their eigenvalues, rigid ones 0 */
     double start_hz[2]; /* lowest flexible and highest frequency at the start */
     double error;       /* of the spline between knots, as measured by
                            ritz_stage_sweep */
@@ -115,6 +118,33 @@ ritz_status ritz_stage_sweep(const ritz_stage *stage,
 
 void ritz_swept_model_free(ritz_swept_model *model);
 
+/* Shares of something at the start that a basis does not span, 0 to 1; 0 of
+   something that is zero. */
+typedef struct ritz_swept_lost {
+    double displacement, velocity; /* in the norm of the mass */
+    double strain;                 /* of the strain energy of displacements */
+    bool all; /* a state is given, and less than 1e-6 of it is left */
+} ritz_swept_lost;
+
+/**
+ * What the basis does not span of an initial state: the norm of d = x0 - S S'x0
+ * relative to that of x0, squared, S = start.
+ *
+ * @param[in] x0, v0  of all modes at the start; NULL: zero
+ */
+ritz_status ritz_swept_lost_state(const ritz_swept_model *model,
+                                  const double *x0, const double *v0,
+                                  ritz_swept_lost *out);
+
+/**
+ * The share of the strain energy of an input's static response that the basis
+ * does not span.
+ *
+ * @param[out] out  NaN if the input moves rigid motions, or no elastic one
+ */
+ritz_status ritz_swept_lost_force(const ritz_swept_model *model, int64_t input,
+                                  double *out);
+
 /**
  * Simulate while the setting follows a path, by the trapezoidal rule with the
  * matrices at the end of each step.
@@ -127,8 +157,9 @@ void ritz_swept_model_free(ritz_swept_model *model);
  *                   only exchanges matrices
  * @param[in] request  its integrator must be the trapezoidal one; x0 and v0 are
  *                     of all modes at the start
- * @return RITZ_ERR_ARGUMENT if the path leaves the range of the model, or if it
- *         ends before the run while the setting still moves
+ * @return RITZ_ERR_ARGUMENT if the path leaves the range of the model, if it
+ *         ends before the run while the setting still moves, or if the basis
+ *         spans nothing of the initial state
  * @cost   O(r^3) a step, and O(Q^2 r) each time x passes a knot
  */
 ritz_status ritz_simulate_swept(const ritz_swept_model *model,

@@ -6,6 +6,17 @@
 
 #include <math.h>
 
+/* Eigenvalues and number of rigid motions among the modes in which x0 is. */
+static ritz_status copy_modes(int64_t count, int64_t rigid,
+                              const double *lambda, ritz_swept_model *m)
+{
+    m->start_rigid = rigid;
+    RITZ_CHECK_COPY(m->start_lambda, lambda, count);
+    for (int64_t k = 0; k < rigid && k < count; k++)
+        m->start_lambda[k] = 0.0;
+    return RITZ_OK;
+}
+
 /* start = sum_c P_c'M_c V_c T_c over the bodies of the stage `origin`, in whose
    modes x0 is; P_c and M_c are of that stage. */
 static ritz_status start_from(const ritz_sweeper *w, const ritz_dense *T,
@@ -15,6 +26,8 @@ static ritz_status start_from(const ritz_sweeper *w, const ritz_dense *T,
     RITZ_OWN(ritz_configuration) c = {0};
 
     RITZ_CHECK(ritz_stage_assemble(origin, w->asked->setting, &c));
+    RITZ_CHECK(copy_modes(c.K.ncol, c.num_rigid, c.lambda, m));
+    RITZ_CHECK(ritz_dense_copy(&c.io.B, &m->start_B));
     RITZ_CHECK(ritz_dense_new(c.K.ncol, m->order, &m->start));
     for (int64_t k = 0; k < origin->count; k++) {
         RITZ_OWN(ritz_dense) part = {0}, VT = {0}, MVT = {0}, own = {0};
@@ -29,7 +42,7 @@ static ritz_status start_from(const ritz_sweeper *w, const ritz_dense *T,
     return RITZ_OK;
 }
 
-/* The matrix that gives q for x0 at the start, and the frequencies there. */
+/* The matrix that gives q for x0 at the start, and the modes there. */
 ritz_status ritz_sweep_start(const ritz_sweeper *w, ritz_swept_model *m)
 {
     const double x = m->unit * w->asked->setting[w->asked->sweep];
@@ -46,5 +59,7 @@ ritz_status ritz_sweep_start(const ritz_sweeper *w, ritz_swept_model *m)
     m->start_hz[1] = sqrt(fmax(k->lambda[m->order - 1], 0.0)) / (2.0 * RITZ_PI);
     if (w->asked->origin)
         return start_from(w, &T, m);
+    RITZ_CHECK(copy_modes(k->V.ncol, k->rigid, k->lambda, m));
+    RITZ_CHECK(ritz_dense_mul_tn(&k->V, &m->io.B, &m->start_B));
     return ritz_sweep_correlate(&k->V, &m->M, &T, &m->start);
 }

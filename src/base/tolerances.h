@@ -87,6 +87,16 @@
 /* The setting at which a mode leaves a band is found to this part of the
    range. */
 #define RITZ_SWEPT_CHANGE 1e-4
+/* A share of the initial state that a basis leaves out is told above this: 3 %
+   of the amplitude. */
+#define RITZ_SWEPT_LOST 1e-3
+/* An initial state of which less than this share is left does not move: 0.1 %
+   of the amplitude. */
+#define RITZ_SWEPT_LEFT 1e-6
+/* An input whose static response a basis leaves out by more than this share
+   hardly acts: most of its effect is missing. Local flexibility next to an
+   input stays below. */
+#define RITZ_SWEPT_LOST_FORCE 0.5
 /* Rotations at two pairs of settings give one axis and a whole turn. */
 #define RITZ_SWEPT_AXIS 1e-6
 

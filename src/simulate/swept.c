@@ -46,6 +46,7 @@
 #include "base/tolerances.h"
 #include "simulate/motion.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -568,6 +569,22 @@ static ritz_status check_request(const ritz_swept_model *model,
     return RITZ_OK;
 }
 
+/* Refuse an initial state that the basis does not span at all. */
+static ritz_status check_start(const ritz_swept_model *model,
+                               const ritz_simulation_request *request)
+{
+    ritz_swept_lost lost = {0};
+
+    if (request->from)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_swept_lost_state(model, request->x0, request->v0, &lost));
+    RITZ_REFUSE_IF(lost.all, RITZ_ERR_ARGUMENT,
+                   "nothing would move: the basis of %" PRId64 " modes has no "
+                   "part of the initial state. Keep more modes",
+                   model->order);
+    return RITZ_OK;
+}
+
 /* Names of inputs and outputs. */
 static ritz_status name_channels(const ritz_io *io, ritz_simulation *s)
 {
@@ -586,6 +603,7 @@ ritz_status ritz_simulate_swept(const ritz_swept_model *model,
     RITZ_OWN(ritz_simulation) s = {0};
 
     RITZ_CHECK(check_request(model, path, request));
+    RITZ_CHECK(check_start(model, request));
     RITZ_CHECK(fill_motion(model, &motion));
     march.motion = &motion;
     march.step = request->step;

@@ -36,6 +36,21 @@ expect 0 'JOINT=FROM:TO:TIME' ritz-simulate --help
         --sweep-modes 14 $run -o table.h5
     expect 0 'path.tsv' ritz-info table.h5
 
+    # What the basis does not span of an initial state; by NumPy, 4 / (1 + 4) of
+    # the mass norm of modes 10 and 16.
+    for k in $(seq 36); do
+        case $k in 10) echo 1 ;; 16) echo 2 ;; *) echo 0 ;; esac
+    done >x0.txt
+    from='--sweep clock=0:60:4s --sweep-modes 14 --step 0.01 scene.yaml -o x.h5'
+    expect 0 'leaves out 80 % of the initial displacement' ritz-simulate \
+        --initial x0.txt $from
+    expect 1 'nothing would move: the basis of 14 modes has no part of the' \
+        ritz-simulate --initial mode:16 $from
+    json 0 ritz-simulate --initial mode:10 $from
+    holds '  and a mode of the basis is whole' \
+        'j["lost_displacement"] < 1e-12 and j["lost_strain"] < 1e-12
+         and not any("leaves out" in w for w in j["warnings"])'
+
     # --- refusals -------------------------------------------------------------
     expect 1 "unknown joint 'clok', is 'clock' meant?" ritz-simulate \
         --sweep clok=0:60:4s $run -o no.h5

@@ -188,6 +188,50 @@ static void say_model(cli_run *run, bool main, const sweep_basis *basis,
                  ratio);
 }
 
+/* Warn of what the basis leaves out of the initial state. */
+static ritz_status say_lost_state(const simulation_task *d,
+                                  const ritz_swept_model *m)
+{
+    ritz_swept_lost lost = {0};
+
+    if (!d->x0)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_swept_lost_state(m, d->x0, d->v0, &lost));
+    sink_field(d->run, "left out",
+               "lost_displacement,lost_strain,lost_velocity",
+               "%.2g of the initial displacement, by mass, %.2g of its strain "
+               "energy, %.2g of the velocity",
+               lost.displacement, lost.strain, lost.velocity);
+    if (!lost.all && fmax(lost.displacement, fmax(lost.strain, lost.velocity)) >
+                         RITZ_SWEPT_LOST)
+        cli_warn(d->run,
+                 "the basis of %" PRId64 " modes leaves out %.3g %% of the "
+                 "initial displacement, %.3g %% of its strain energy and %.3g "
+                 "%% of the initial velocity: keep more --sweep-modes",
+                 m->order, 100.0 * lost.displacement, 100.0 * lost.strain,
+                 100.0 * lost.velocity);
+    return RITZ_OK;
+}
+
+/* Warn of inputs that hardly act through the basis. */
+static ritz_status say_lost_forces(const simulation_task *d,
+                                   const ritz_swept_model *m)
+{
+    for (int64_t j = 0; j < m->io.num_inputs; j++) {
+        double lost = 0.0;
+
+        if (d->signal[j].kind == RITZ_SIGNAL_ZERO)
+            continue;
+        RITZ_CHECK(ritz_swept_lost_force(m, j, &lost));
+        if (lost > RITZ_SWEPT_LOST_FORCE)
+            cli_warn(d->run,
+                     "the basis of %" PRId64 " modes leaves out %.3g %% of the "
+                     "static response to '%s': keep more --sweep-modes",
+                     m->order, 100.0 * lost, m->io.input[j]);
+    }
+    return RITZ_OK;
+}
+
 /* Largest difference of the mechanical energy, relative to its largest
    value. */
 static double compare_energies(const ritz_simulation *exact,
@@ -214,6 +258,10 @@ static ritz_status run_basis(const simulation_task *d, bool main,
     RITZ_CHECK(make_model(d, path, basis, &made));
     if (!request->from)
         say_model(d->run, main, basis, &made, path);
+    if (!request->from && main)
+        RITZ_CHECK(say_lost_state(d, &made));
+    if (!request->from && main && basis->cut)
+        RITZ_CHECK(say_lost_forces(d, &made));
     return ritz_simulate_swept(&made, path, basis->terms, request, out);
 }
 
