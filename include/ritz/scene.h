@@ -239,6 +239,15 @@ ritz_status ritz_scene_parse(const char *path, const char *text,
                              ritz_scene *out);
 
 /**
+ * Index of a sweep by its name, "clock" or "wrist.2".
+ *
+ * @return RITZ_ERR_ARGUMENT if there is none of that name, or the joint has
+ *         nothing to set
+ */
+ritz_status ritz_scene_sweep(const ritz_scene *scene, const char *name,
+                             int64_t *out);
+
+/**
  * Row of settings for "clock=60,slide=0.5" (--at): sweeps not named take their
  * only setting. Settings need not be in the scene's lists.
  *

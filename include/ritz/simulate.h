@@ -54,6 +54,9 @@ typedef struct ritz_signal {
  */
 ritz_status ritz_signal_parse(const char *text, ritz_signal *out);
 
+/** A file of two columns alone. @return RITZ_ERR_FILE, RITZ_ERR_FORMAT */
+ritz_status ritz_signal_read(const char *path, ritz_signal *out);
+
 /** Whether a text names a file: it begins with none of these words. */
 bool ritz_signal_is_file(const char *text);
 

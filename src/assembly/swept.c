@@ -37,8 +37,9 @@ static ritz_status choose_order(const ritz_sweeper *w,
     else if (asked->up_to_hz > 0.0)
         *out = ritz_sweep_count_modes(first, asked->up_to_hz);
     RITZ_REFUSE_IF(*out > first->V.ncol, RITZ_ERR_ARGUMENT,
-                   "there are %" PRId64 " modes, not %" PRId64, first->V.ncol,
-                   *out);
+                   "%" PRId64
+                   " modes are asked for, and the system has %" PRId64,
+                   *out, first->V.ncol);
     RITZ_REFUSE_IF(*out < first->rigid || *out < 1, RITZ_ERR_ARGUMENT,
                    "%" PRId64 " modes are fewer than the %" PRId64
                    " rigid motions",

@@ -17,9 +17,8 @@ static void clear_row(const ritz_scene *scene, double *row)
         row[k] = nan("");
 }
 
-/* Index of a sweep by the name of its joint, which must have a setting. */
-static ritz_status find_sweep(const ritz_scene *scene, const char *name,
-                              int64_t *out)
+ritz_status ritz_scene_sweep(const ritz_scene *scene, const char *name,
+                             int64_t *out)
 {
     const ritz_names sweeps = {"joint", scene->num_sweeps,
                                (const char *)scene->sweep,
@@ -27,13 +26,17 @@ static ritz_status find_sweep(const ritz_scene *scene, const char *name,
     const ritz_names joints = {"joint", scene->num_joints,
                                (const char *)scene->joint,
                                sizeof *scene->joint};
+    const int64_t k = ritz_names_index(&sweeps, name);
 
-    *out = ritz_names_index(&sweeps, name);
-    if (*out >= 0)
-        return RITZ_OK;
-    RITZ_REFUSE_IF(ritz_names_index(&joints, name) >= 0, RITZ_ERR_ARGUMENT,
-                   "joint '%s' has nothing to set", name);
-    return ritz_words_find(&sweeps, name, out);
+    RITZ_REFUSE_IF(k < 0 && ritz_names_index(&joints, name) >= 0,
+                   RITZ_ERR_ARGUMENT,
+                   "joint '%s' has nothing to set: only hinges, sliders and "
+                   "universal joints have",
+                   name);
+    if (k < 0)
+        return ritz_words_find(&sweeps, name, out);
+    *out = k;
+    return RITZ_OK;
 }
 
 /* Put a setting in a row, once; the sweep is named "clock" or "wrist.2". */
@@ -42,7 +45,7 @@ static ritz_status set_in_row(const ritz_scene *scene, const char *name,
 {
     int64_t k = 0;
 
-    RITZ_CHECK(find_sweep(scene, name, &k));
+    RITZ_CHECK(ritz_scene_sweep(scene, name, &k));
     RITZ_REFUSE_IF(!isnan(row[k]), RITZ_ERR_ARGUMENT,
                    "joint '%s' is given twice", name);
     row[k] = setting;

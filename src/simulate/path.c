@@ -15,28 +15,46 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Read FROM:TO:T, where T may end in "s", and ":smooth" may follow. */
-static bool read_words(const char *text, ritz_path *out)
+/* A number of FROM:TO:TIME. */
+static ritz_status read_number(const char *text, const char *word, double *out)
+{
+    RITZ_REFUSE_IF(!ritz_text_real(word, out), RITZ_ERR_ARGUMENT,
+                   "'%s' in '%s' is not a finite number", word, text);
+    return RITZ_OK;
+}
+
+/* Read FROM:TO:TIME, where TIME may end in "s", and ":smooth" may follow. */
+static ritz_status read_words(const char *text, ritz_path *out)
 {
     char copy[RITZ_NAME_SIZE] = "";
-    char *place = NULL, *word[4] = {0}, *end = NULL;
+    char *place = copy, *word[5] = {0}, *end = NULL;
+    int count = 0;
 
-    if (strlen(text) >= sizeof copy)
-        return false;
+    RITZ_REFUSE_IF(strlen(text) >= sizeof copy, RITZ_ERR_ARGUMENT,
+                   "'%s' is too long", text);
     memcpy(copy, text, strlen(text) + 1);
-    word[0] = strtok_r(copy, ":", &place);
-    for (int k = 1; k < 4 && word[k - 1]; k++)
-        word[k] = strtok_r(NULL, ":", &place);
-    if (!word[2] || strtok_r(NULL, ":", &place))
-        return false;
+    while (place && count < 5) {
+        word[count++] = place;
+        place = strchr(place, ':');
+        if (place)
+            *place++ = '\0';
+    }
+    RITZ_REFUSE_IF(count < 3 || count > 4, RITZ_ERR_ARGUMENT,
+                   "'%s' is not FROM:TO:TIME, as 0:60:30s or 0:60:30s:smooth",
+                   text);
+    RITZ_REFUSE_IF(word[3] && strcmp(word[3], "smooth") != 0, RITZ_ERR_ARGUMENT,
+                   "'%s' in '%s' is not 'smooth'", word[3], text);
+    out->kind = word[3] ? RITZ_PATH_SMOOTH : RITZ_PATH_LINEAR;
     end = word[2] + strlen(word[2]);
     if (end - word[2] > 1 && end[-1] == 's')
         end[-1] = '\0';
-    out->kind = word[3] ? RITZ_PATH_SMOOTH : RITZ_PATH_LINEAR;
-    return ritz_text_real(word[0], &out->from) &&
-           ritz_text_real(word[1], &out->to) &&
-           ritz_text_real(word[2], &out->seconds) &&
-           (!word[3] || strcmp(word[3], "smooth") == 0);
+    RITZ_CHECK(read_number(text, word[0], &out->from));
+    RITZ_CHECK(read_number(text, word[1], &out->to));
+    RITZ_CHECK(read_number(text, word[2], &out->seconds));
+    RITZ_REFUSE_IF(!(out->seconds > 0.0), RITZ_ERR_ARGUMENT,
+                   "the time of '%s' is %g s, and must be above 0", text,
+                   out->seconds);
+    return RITZ_OK;
 }
 
 /*
@@ -81,7 +99,7 @@ static ritz_status read_table(const char *file, ritz_path *out)
 {
     ritz_signal table = {0};
 
-    RITZ_CHECK(ritz_signal_parse(file, &table));
+    RITZ_CHECK_IN(file, ritz_signal_read(file, &table));
     out->kind = RITZ_PATH_TABLE;
     out->count = table.count;
     out->time = table.time;
@@ -103,22 +121,20 @@ static ritz_status read_table(const char *file, ritz_path *out)
 ritz_status ritz_path_parse(const char *text, ritz_path *out)
 {
     RITZ_OWN(ritz_path) path = {0};
+    ritz_status status =
+        strchr(text, ':') ? read_words(text, &path) : read_table(text, &path);
     double range[2];
 
-    if (strchr(text, ':')) {
-        RITZ_REFUSE_IF(!read_words(text, &path), RITZ_ERR_ARGUMENT,
-                       "'%s' is not FROM:TO:SECONDS, as 0:60:30s or "
-                       "0:60:30s:smooth",
-                       text);
-        RITZ_REFUSE_IF(!isfinite(path.from) || !isfinite(path.to) ||
-                           !isfinite(path.seconds) || !(path.seconds > 0.0),
-                       RITZ_ERR_ARGUMENT, "'%s' takes no time", text);
-    } else {
-        RITZ_CHECK(read_table(text, &path));
-    }
+    if (status == RITZ_ERR_FILE)
+        return ritz_fail(RITZ_ERR_FILE,
+                         "'%s' is neither FROM:TO:TIME, as 0:60:30s, nor a "
+                         "file of times and settings that can be read",
+                         text);
+    RITZ_CHECK(status);
     ritz_path_range(&path, range);
     RITZ_REFUSE_IF(!(range[1] > range[0]), RITZ_ERR_ARGUMENT,
-                   "'%s' does not move: its range is empty", text);
+                   "'%s' does not move: it is at %g all the time", text,
+                   range[0]);
     RITZ_MOVE(*out, path);
     return RITZ_OK;
 }

@@ -115,7 +115,7 @@ static ritz_status parse_line(char *line, int64_t number, bool *any,
     return RITZ_OK;
 }
 
-static ritz_status read_table(const char *path, ritz_signal *out)
+ritz_status ritz_signal_read(const char *path, ritz_signal *out)
 {
     RITZ_OWN(ritz_signal)
     signal = {.kind = RITZ_SIGNAL_TABLE, .amplitude = 1.0};
@@ -152,7 +152,7 @@ ritz_status ritz_signal_parse(const char *text, ritz_signal *out)
 {
     const struct word *word = find_word(text);
     ritz_status status = word ? parse_word(word, text, out)
-                              : ritz_context(read_table(text, out), text);
+                              : ritz_context(ritz_signal_read(text, out), text);
 
     if (status != RITZ_ERR_FILE)
         return status;

@@ -52,9 +52,15 @@ expect 0 'JOINT=FROM:TO:TIME' ritz-simulate --help
          and not any("leaves out" in w for w in j["warnings"])'
 
     # --- refusals -------------------------------------------------------------
-    expect 1 "unknown joint 'clok', is 'clock' meant?" ritz-simulate \
+    expect 1 "--sweep: unknown joint 'clok', is 'clock' meant?" ritz-simulate \
         --sweep clok=0:60:4s $run -o no.h5
-    expect 1 "'0:0:4s' does not move: its range is empty" ritz-simulate \
+    expect 1 "--at: unknown joint 'con', is 'cone' meant?" ritz-simulate \
+        --sweep clock=0:60:4s --at con=1 $run -o no.h5
+    expect 2 "'clock' moves by --sweep, and --at sets it too" ritz-simulate \
+        --sweep clock=0:60:4s --at cone=1,clock=3 $run -o no.h5
+    expect 1 "'no.tsv' is neither FROM:TO:TIME, as 0:60:30s, nor a file" \
+        ritz-simulate --sweep clock=no.tsv $run -o no.h5
+    expect 1 "'0:0:4s' does not move: it is at 0 all the time" ritz-simulate \
         --sweep clock=0:0:4s $run -o no.h5
     expect 1 "'clock' is not JOINT=FROM:TO:TIME" ritz-simulate \
         --sweep clock $run -o no.h5
@@ -76,7 +82,7 @@ expect 0 'JOINT=FROM:TO:TIME' ritz-simulate --help
 }
 expect 1 '--sweep needs --step' ritz-simulate --sweep clock=0:60:4s \
     --input motor=step scene.yaml -o no.h5
-expect 1 "'rotor.h5' is no scene, whose joints move" ritz-simulate --sweep clock=0:60:4s \
+expect 1 "'rotor.h5' is not a scene: joints of a scene move" ritz-simulate --sweep clock=0:60:4s \
     --step 0.01 --initial mode:7 rotor.h5 -o no.h5
 works 'nothing is written where a run is refused' test ! -e no.h5
 

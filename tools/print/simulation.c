@@ -322,6 +322,7 @@ static ritz_status read_scene(simulation_task *d)
     const char *path = d->run->operand[0];
 
     RITZ_CHECK(model_scene(d->run, path, &d->scene));
+    RITZ_CHECK(simulation_sweep_check(d));
     RITZ_CHECK_NEW(d->setting, d->scene.num_sweeps);
     RITZ_CHECK_IN("--at", ritz_scene_settings(&d->scene, at, d->setting));
     RITZ_CHECK(ritz_stage_new(&d->scene, &d->stage));

@@ -93,6 +93,9 @@ simulation_function simulation_sweep;
  * refuse a text that is no path. */
 ritz_status simulation_sweep_prepare(cli_run *run, simulation_options *given);
 
+/** Refuse a joint of --sweep that the scene has not, or that does not move. */
+ritz_status simulation_sweep_check(const simulation_task *d);
+
 /** Print what each integrator costs at the step that it needs. */
 ritz_status simulation_say_costs(simulation_task *d, const double band_hz[2]);
 

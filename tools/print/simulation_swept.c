@@ -49,6 +49,22 @@ static ritz_status parse_path(const char *text, ritz_path *out)
     return ritz_path_parse(equals + 1, out);
 }
 
+/* Refuse a setting of --at for the joint that moves. */
+static void check_at(const cli_run *run, const char *sweep, const char *at)
+{
+    const size_t length = (size_t)(strchr(sweep, '=') - sweep) + 1;
+
+    while (at) {
+        const char *comma = strchr(at, ',');
+
+        if (strncmp(at, sweep, length) == 0)
+            cli_refuse(run->program,
+                       "'%.*s' moves by --sweep, and --at sets it too",
+                       (int)length - 1, sweep);
+        at = comma ? comma + 1 : NULL;
+    }
+}
+
 /* Refuse a number of modes that no basis of the run is cut to. */
 static void check_modes(const cli_run *run, const simulation_options *given)
 {
@@ -78,8 +94,10 @@ ritz_status simulation_sweep_prepare(cli_run *run, simulation_options *given)
     }
     check_modes(run, given);
     RITZ_REFUSE_IF(ritz_container_seems(run->operand[0]), RITZ_ERR_ARGUMENT,
-                   "'%s' is no scene, whose joints move", run->operand[0]);
+                   "'%s' is not a scene: joints of a scene move",
+                   run->operand[0]);
     RITZ_CHECK(parse_path(given->sweep, &path));
+    check_at(run, given->sweep, at);
     if (path.kind == RITZ_PATH_TABLE)
         RITZ_CHECK(cli_input(run, strchr(given->sweep, '=') + 1));
     length = snprintf(given->sweep_at, sizeof given->sweep_at, "%.*s=%.17g%s%s",
@@ -98,19 +116,31 @@ ritz_status simulation_sweep_prepare(cli_run *run, simulation_options *given)
     return RITZ_OK;
 }
 
-/* The sweep of the scene, and the range of its path. */
-static ritz_status ask_range(const simulation_task *d, const ritz_path *path,
-                             ritz_sweep_request *out)
+/* The sweep of the scene that --sweep names. */
+static ritz_status find_joint(const simulation_task *d, int64_t *out)
 {
-    const ritz_scene *scene = &d->scene;
     const char *text = d->given->sweep;
-    const ritz_names names = {"joint", scene->num_sweeps,
-                              (const char *)scene->sweep, sizeof *scene->sweep};
     char joint[RITZ_NAME_SIZE] = "";
 
     (void)snprintf(joint, sizeof joint, "%.*s", (int)(strchr(text, '=') - text),
                    text);
-    RITZ_CHECK(ritz_words_find(&names, joint, &out->sweep));
+    return ritz_scene_sweep(&d->scene, joint, out);
+}
+
+ritz_status simulation_sweep_check(const simulation_task *d)
+{
+    int64_t sweep = 0;
+
+    if (!d->given->sweep)
+        return RITZ_OK;
+    return ritz_context(find_joint(d, &sweep), "--sweep");
+}
+
+/* The sweep of the scene, and the range of its path. */
+static ritz_status ask_range(const simulation_task *d, const ritz_path *path,
+                             ritz_sweep_request *out)
+{
+    RITZ_CHECK(find_joint(d, &out->sweep));
     out->setting = d->setting;
     out->damping = d->subject.damping;
     ritz_path_range(path, out->range);

@@ -355,7 +355,7 @@ static void requests_without_a_model_are_refused(void **state)
     asked.sweep = 0;
     asked.modes = 100;
     assert_fails(ritz_stage_sweep(&m.stage, &asked, &model), RITZ_ERR_ARGUMENT,
-                 "there are 30 modes, not 100");
+                 "100 modes are asked for, and the system has 30");
     asked.modes = 3;
     assert_fails(ritz_stage_sweep(&m.stage, &asked, &model), RITZ_ERR_ARGUMENT,
                  "3 modes are fewer than the 6 rigid motions");

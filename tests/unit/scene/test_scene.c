@@ -309,7 +309,9 @@ static void bad_configurations_are_refused(void **)
         {SMALL HINGES "configurations: [{p: 0}]\n",
          "s:12:18: joint 'q' has several settings and none is given here"},
         {SMALL HINGES "configurations: [{p: 0, q: 0, w: 0}]\n",
-         "s:12:31: joint 'w' has nothing to set"},
+         "s:12:31: joint 'w' has nothing to set: only hinges, sliders and "
+         "universal "
+         "joints have"},
         {SMALL HINGES "configurations: [{p: 0, q: 0, p: 1}]\n",
          "s:12:31: joint 'p' is given twice"},
         {SMALL HINGES "configurations: [{p: 0, q: east}]\n",

@@ -101,7 +101,9 @@ static void bad_angles_are_refused_and_nothing_is_written(void **)
         {"p=60deg", "'60deg' of joint 'p' is not a finite number"},
         {"p=nan", "'nan' of joint 'p' is not a finite number"},
         {"p=1,p=2", "joint 'p' is given twice"},
-        {"w=1", "joint 'w' has nothing to set"},
+        {"w=1",
+         "joint 'w' has nothing to set: only hinges, sliders and universal "
+         "joints have"},
         {"pp=1", "unknown joint 'pp', is 'p' meant?"},
         {"elbow=1", "unknown joint 'elbow', there is p, q"},
     };

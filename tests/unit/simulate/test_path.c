@@ -102,14 +102,21 @@ static void the_range_of_a_table_is_that_of_its_spline(void **state)
 static void texts_that_are_no_path_are_refused(void **state)
 {
     static const char *const texts[][2] = {
-        {"0:60", "'0:60' is not FROM:TO:SECONDS"},
-        {"0:60:30s:fast", "is not FROM:TO:SECONDS"},
-        {"0:60:30s:smooth:1", "is not FROM:TO:SECONDS"},
-        {"0:x:30s", "is not FROM:TO:SECONDS"},
-        {"0:60:s", "is not FROM:TO:SECONDS"},
-        {"0:60:0s", "takes no time"},
-        {"0:60:-3", "takes no time"},
-        {"60:60:3", "'60:60:3' does not move: its range is empty"},
+        {"0:60", "'0:60' is not FROM:TO:TIME, as 0:60:30s"},
+        {"0:60:30s:smooth:1", "is not FROM:TO:TIME"},
+        {"0:60:30s:fast", "'fast' in '0:60:30s:fast' is not 'smooth'"},
+        {"0:60:30s:", "'' in '0:60:30s:' is not 'smooth'"},
+        {"0:x:30s", "'x' in '0:x:30s' is not a finite number"},
+        {"nan:60:3", "'nan' in 'nan:60:3' is not a finite number"},
+        {"0:1e999:3", "'1e999' in '0:1e999:3' is not a finite number"},
+        {":60:3", "'' in ':60:3' is not a finite number"},
+        {"0::3", "'' in '0::3' is not a finite number"},
+        {"0:60:", "'' in '0:60:' is not a finite number"},
+        {"0:60:s", "'s' in '0:60:s' is not a finite number"},
+        {"0:60:4m", "'4m' in '0:60:4m' is not a finite number"},
+        {"0:60:0s", "the time of '0:60:0s' is 0 s, and must be above 0"},
+        {"0:60:-3", "the time of '0:60:-3' is -3 s, and must be above 0"},
+        {"60:60:3", "'60:60:3' does not move: it is at 60 all the time"},
     };
     RITZ_OWN(ritz_path) path = {0};
 
@@ -117,7 +124,13 @@ static void texts_that_are_no_path_are_refused(void **state)
     for (size_t k = 0; k < sizeof texts / sizeof *texts; k++)
         assert_fails(ritz_path_parse(texts[k][0], &path), RITZ_ERR_ARGUMENT,
                      texts[k][1]);
-    assert_fails(ritz_path_parse("no-such-file", &path), RITZ_ERR_FILE, "no");
+    for (int k = 0; k < 3; k++)
+        assert_fails(
+            ritz_path_parse((const char *[]){"no-such-file", "5", ""}[k],
+                            &path),
+            RITZ_ERR_FILE,
+            "is neither FROM:TO:TIME, as 0:60:30s, nor a file of times and "
+            "settings that can be read");
     assert_fails(ritz_path_parse(folder_write("one.tsv", "0 1\n"), &path),
                  RITZ_ERR_ARGUMENT, "has fewer than two times");
     assert_fails(
