@@ -102,10 +102,16 @@ typedef struct ritz_constrained_facts {
     int64_t num_redundant;
     int64_t *redundant; /* rows that depend on those before them */
     double gain[RITZ_MOST_GAINS];
-    double joined_hz;  /* highest frequency of the joined bodies */
-    double highest_hz; /* the same with the terms of the method */
-    double step_limit; /* s, of central differences; HUGE_VAL: no limit */
-    double step_cost;  /* processor time of a step, s, as measured */
+    double joined_hz;      /* highest frequency of the joined bodies */
+    double highest_hz;     /* the same with the terms of the method */
+    double step_limit;     /* s, of central differences; HUGE_VAL: no limit */
+    double step_cost;      /* processor time of a step, s, as measured */
+    double force_rounding; /* eps (w h)^2 / 4 of penalty springs: the part of
+                              the joint forces that is rounding after a load
+                              that jumps. Else 0 */
+    double moved;      /* start of projection and index-2: by which part of the
+                          displacements it was moved, relative in M */
+    double moved_rate; /* the same of velocities */
     bool unresolved;   /* the frequency of penalty springs is above 2 / step, so
                           that with an implicit integrator forces oscillate from
                           step to step */
@@ -115,8 +121,9 @@ void ritz_constrained_facts_free(ritz_constrained_facts *facts);
 
 /**
  * Simulate bodies while a method enforces their constraints. Initial values are
- * used as they are given, whether or not they satisfy the constraints; impulses
- * act on the joined bodies. Diagnostics: "violation" and "violation-rate", the
+ * used as they are given, whether or not they satisfy the constraints; only
+ * projection and index-2 begin with the nearest values that do, in the norm of
+ * M. Impulses act on the joined bodies. Diagnostics: "violation" and "violation-rate", the
  * largest |C q| and |C q'| of a row, and "multiplier", the largest |lambda| of
  * the solution with the least sum of squares.
  *
@@ -131,8 +138,8 @@ void ritz_constrained_facts_free(ritz_constrained_facts *facts);
  * @param[out] facts   may be NULL
  * @return RITZ_ERR_ARGUMENT if the step is above the stability limit of the
  *         integrator, for the bodies and the terms of the method (the sentence
- *         has the limit), if a motion of a body has no mass, or if coordinates
- *         are requested; RITZ_ERR_CONVERGENCE if the motion grows without bound
+ *         has the limit), if the forces of penalty springs would be rounding,
+ *         if a motion of a body has no mass, or if coordinates are requested; RITZ_ERR_CONVERGENCE if the motion grows without bound
  * @cost   O(n^3) once; two products and a solve of order n for each step
  */
 ritz_status ritz_simulate_constrained(const ritz_unjoined *bodies,

@@ -807,6 +807,17 @@
    relative to its terms: some eps, as each is a sum of as many terms as there
    are constraints. */
 #define RITZ_LAW_SOLVED 1e-13
+/* A violation of the initial values below this part of the terms whose sum it
+   is, is rounding: some hundred terms, in coordinates that are themselves
+   rounded. */
+#define RITZ_VIOLATION_ROUNDING 1e-13
+/* A start that is moved by a larger part of itself, to satisfy the constraints,
+   may not be the one that was meant: values of three digits are moved by
+   less. */
+#define RITZ_START_MOVED 1e-3
+/* Rounding of the forces of stiff springs, relative to the forces, of which a
+   run warns. */
+#define RITZ_FORCE_ROUNDING 1e-3
 /* Frequency up to which parameters of a constraint are chosen with an explicit
    integrator, as part of what the step allows: a tenth is kept free. */
 #define RITZ_GAIN_ROOM 0.9

@@ -1,12 +1,12 @@
 /*
- * Runs of joined bodies: a march whose state is that of all bodies, z and z'. A
+ * Runs of joined bodies: a march whose state is that of all bodies, x and x'. A
  * ritz_integrator advances it with the terms of a stabilisation, or the
  * integrator of index 2 does.
  *
  * Energies are those of the bodies, and of the springs and masses of a penalty:
  *
- *     kinetic = |z'|^2 / 2 + inertia |c'|^2 / 2
- *     potential = z'Lambda z / 2 + stiffness |c|^2 / 2
+ *     kinetic = |x'|^2 / 2 + inertia |c'|^2 / 2
+ *     potential = x'K x / 2 + stiffness |c|^2 / 2
  *
  * The balance of energies differs from zero by what the integrator adds, and by
  * the work of forces along violated constraints: multipliers do no work where
@@ -34,14 +34,14 @@ static const char *const diagnostics[DIAGNOSTICS] = {
 typedef struct run_state {
     const ritz_linked *joined; /* borrowed */
     ritz_stabiliser terms;
-    ritz_motion motion;        /* bodies with the terms of a stabilisation */
-    ritz_march inner;          /* of this motion */
-    ritz_index2 index2;        /* if terms.implicit */
-    ritz_law_step law;         /* if terms.law */
-    double *before, *force;    /* n */
-    double *c, *rate, *mu, *g; /* rank */
-    double *u0, *u1;           /* inputs, followed by g */
-    double *saved;             /* the inner state at the start of a step */
+    ritz_motion motion;     /* bodies with the terms of a stabilisation */
+    ritz_march inner;       /* of this motion */
+    ritz_index2 index2;     /* if terms.implicit */
+    ritz_law_step law;      /* if terms.law */
+    double *before, *force; /* n */
+    double *mu, *g;         /* rank */
+    double *u0, *u1;        /* inputs, followed by g */
+    double *saved;          /* the inner state at the start of a step */
 } run_state;
 
 static void release_run(void *own)
@@ -52,8 +52,7 @@ static void release_run(void *own)
     ritz_motion_free(&s->motion);
     ritz_index2_free(&s->index2);
     ritz_law_step_free(&s->law);
-    RITZ_FREE(s->before, s->force, s->c, s->rate, s->mu, s->g, s->u0, s->u1,
-              s->saved, s);
+    RITZ_FREE(s->before, s->force, s->mu, s->g, s->u0, s->u1, s->saved, s);
 }
 
 /* Copy x and v into the inner march, or back from it. */
@@ -83,19 +82,14 @@ static void save_state(bool back, run_state *s)
                    (size_t)part[k].count * sizeof *at);
 }
 
-static void find_gaps(run_state *s, const double *x, const double *v)
-{
-    ritz_linked_gap(s->joined, x, s->c);
-    ritz_linked_gap(s->joined, v, s->rate);
-}
-
-/* g for the present c and c'. */
-static void find_law(run_state *s, double *g)
+/* g for c and c', the first of x and v. */
+static void find_law(const run_state *s, const double *x, const double *v,
+                     double *g)
 {
     for (int64_t k = 0; k < s->joined->rank; k++) {
         double out[3] = {0.0};
 
-        s->terms.law(&s->terms, s->c[k], s->rate[k], out);
+        s->terms.law(&s->terms, x[k], v[k], out);
         g[k] = out[0];
     }
 }
@@ -105,34 +99,34 @@ static void find_law(run_state *s, double *g)
 static ritz_status advance_law(run_state *s)
 {
     const int64_t rank = s->joined->rank;
+    double *g0 = s->u0 + s->joined->motion.B.ncol;
     double *g1 = s->u1 + s->joined->motion.B.ncol;
 
-    find_gaps(s, s->inner.x, s->inner.v);
-    find_law(s, s->u0 + s->joined->motion.B.ncol);
-    memcpy(s->g, s->u0 + s->joined->motion.B.ncol, (size_t)rank * sizeof *s->g);
+    find_law(s, s->inner.x, s->inner.v, g0);
     memset(g1, 0, (size_t)rank * sizeof *g1);
     save_state(false, s);
     RITZ_CHECK(s->inner.advance(&s->inner, s->u0, s->u1));
-    ritz_linked_gap(s->joined, s->inner.x, s->law.c);
-    ritz_linked_gap(s->joined, s->inner.v, s->law.rate);
-    memcpy(g1, s->g, (size_t)rank * sizeof *g1);
+    memcpy(s->law.c, s->inner.x, (size_t)rank * sizeof *g1);
+    memcpy(s->law.rate, s->inner.v, (size_t)rank * sizeof *g1);
+    memcpy(g1, g0, (size_t)rank * sizeof *g1);
     RITZ_CHECK(ritz_law_step_solve(&s->terms, &s->law, g1));
     save_state(true, s);
     return s->inner.advance(&s->inner, s->u0, s->u1);
 }
 
-/* z := (I - W'W) z, and z' likewise. */
+/* c := 0, and c' likewise. */
 static void project_state(ritz_march *march)
 {
-    run_state *s = march->own;
+    const run_state *s = march->own;
+    const size_t size = (size_t)s->joined->rank * sizeof(double);
 
-    find_gaps(s, march->x, march->v);
-    ritz_linked_push(s->joined, -1.0, s->c, march->x);
-    ritz_linked_push(s->joined, -1.0, s->rate, march->v);
+    memset(march->x, 0, size);
+    memset(march->v, 0, size);
 }
 
 /* Energy h v'A v that the damper A of a penalty dissipates, v = (c_1 - c_0) /
-   h, and that a law dissipates. */
+   h, and that a law dissipates. The changes of c are the first of those of
+   x. */
 static double dissipate_gaps(const run_state *s, double step)
 {
     const double *g0 = s->u0 + s->joined->motion.B.ncol;
@@ -140,14 +134,14 @@ static double dissipate_gaps(const run_state *s, double step)
     double sum = 0.0;
 
     for (int64_t k = 0; k < s->joined->rank; k++) {
-        sum += s->terms.damping / step * s->c[k] * s->c[k];
+        sum += s->terms.damping / step * s->before[k] * s->before[k];
         if (s->terms.law)
-            sum -= 0.5 * (g0[k] + g1[k]) * s->c[k];
+            sum -= 0.5 * (g0[k] + g1[k]) * s->before[k];
     }
     return sum;
 }
 
-/* Work is that of mean forces over the change of z, as in other integrators. */
+/* Work is that of mean forces over the change of x, as in other integrators. */
 static void account_energy(ritz_march *march, const double *u0,
                            const double *u1)
 {
@@ -163,10 +157,8 @@ static void account_energy(ritz_march *march, const double *u0,
     memset(s->force, 0, (size_t)m->n * sizeof *s->force);
     ritz_motion_gemv(&m->D, 1.0 / march->step, s->before, s->force);
     march->dissipated += ritz_motion_dot(m->n, s->before, s->force);
-    if (s->terms.multipliers)
-        return;
-    ritz_linked_gap(s->joined, s->before, s->c);
-    march->dissipated += dissipate_gaps(s, march->step);
+    if (!s->terms.multipliers)
+        march->dissipated += dissipate_gaps(s, march->step);
 }
 
 static ritz_status advance_run(ritz_march *march, const double *u0,
@@ -202,36 +194,32 @@ static ritz_status settle_run(ritz_march *march, const double *u)
     }
     exchange_state(true, march);
     memcpy(s->u0, u, (size_t)march->motion->B.ncol * sizeof *u);
-    if (s->terms.law) {
-        find_gaps(s, march->x, march->v);
-        find_law(s, s->u0 + march->motion->B.ncol);
-    }
+    if (s->terms.law)
+        find_law(s, march->x, march->v, s->u0 + march->motion->B.ncol);
     return s->inner.settle(&s->inner, s->u0);
 }
 
-/* mu = W z_f'' - W z'', z_f'' being the acceleration of free bodies. */
+/* mu = c_f'' - c'', c_f'' being that of free bodies. */
 static void find_multipliers(const ritz_march *march, const double *u)
 {
     const ritz_motion *m = march->motion;
     run_state *s = march->own;
     const ritz_stabiliser *t = &s->terms;
 
-    for (int64_t k = 0; k < m->n; k++)
-        s->force[k] = -m->lambda[k] * march->x[k];
+    memset(s->force, 0, (size_t)m->n * sizeof *s->force);
     ritz_motion_gemv(&m->B, 1.0, u, s->force);
+    ritz_motion_gemv(&m->K, -1.0, march->x, s->force);
     ritz_motion_gemv(&m->D, -1.0, march->v, s->force);
-    ritz_linked_gap(s->joined, s->force, s->mu);
-    find_gaps(s, march->x, march->v);
     memset(s->g, 0, (size_t)s->joined->rank * sizeof *s->g);
     if (t->law)
-        find_law(s, s->g);
+        find_law(s, march->x, march->v, s->g);
     for (int64_t k = 0; k < s->joined->rank; k++) {
         const double held =
-            t->stiffness * s->c[k] + t->damping * s->rate[k] - s->g[k];
+            t->stiffness * march->x[k] + t->damping * march->v[k] - s->g[k];
 
-        s->mu[k] = t->multipliers
-                       ? s->mu[k] + held
-                       : s->mu[k] - (s->mu[k] - held) / (1.0 + t->inertia);
+        s->mu[k] = t->multipliers ? s->force[k] + held
+                                  : s->force[k] - (s->force[k] - held) /
+                                                      (1.0 + t->inertia);
     }
 }
 
@@ -254,19 +242,14 @@ static void find_energy(const ritz_march *march, double *kinetic,
                         double *potential)
 {
     const ritz_motion *m = march->motion;
-    run_state *s = march->own;
+    const run_state *s = march->own;
+    const double *x = march->x, *v = march->v;
 
-    *kinetic = *potential = 0.0;
-    for (int64_t k = 0; k < m->n; k++) {
-        *kinetic += 0.5 * march->v[k] * march->v[k];
-        *potential += 0.5 * m->lambda[k] * march->x[k] * march->x[k];
-    }
-    if (s->terms.multipliers)
-        return;
-    find_gaps(s, march->x, march->v);
-    for (int64_t k = 0; k < s->joined->rank; k++) {
-        *kinetic += 0.5 * s->terms.inertia * s->rate[k] * s->rate[k];
-        *potential += 0.5 * s->terms.stiffness * s->c[k] * s->c[k];
+    *kinetic = 0.5 * ritz_motion_dot(m->n, v, v);
+    *potential = 0.5 * ritz_motion_form(&m->K, x);
+    for (int64_t k = 0; !s->terms.multipliers && k < s->joined->rank; k++) {
+        *kinetic += 0.5 * s->terms.inertia * v[k] * v[k];
+        *potential += 0.5 * s->terms.stiffness * x[k] * x[k];
     }
 }
 
@@ -304,11 +287,13 @@ static ritz_status find_influence(run_state *s)
     RITZ_CHECK(ritz_law_step_new(rank, &s->law));
     save_state(false, s); /* at rest */
     for (int64_t j = 0; j < rank; j++) {
+        const size_t size = (size_t)rank * sizeof(double);
+
         s->u1[inputs + j] = 1.0;
         RITZ_CHECK(s->inner.advance(&s->inner, s->u0, s->u1));
         s->u1[inputs + j] = 0.0;
-        ritz_linked_gap(s->joined, s->inner.x, ritz_dense_col(&s->law.X, j));
-        ritz_linked_gap(s->joined, s->inner.v, ritz_dense_col(&s->law.V, j));
+        memcpy(ritz_dense_col(&s->law.X, j), s->inner.x, size);
+        memcpy(ritz_dense_col(&s->law.V, j), s->inner.v, size);
         save_state(true, s);
     }
     return RITZ_OK;
@@ -342,8 +327,6 @@ static ritz_status start_run(const ritz_linked *joined,
     s->terms = *terms;
     RITZ_CHECK_NEW(s->before, n);
     RITZ_CHECK_NEW(s->force, n);
-    RITZ_CHECK_NEW(s->c, rank);
-    RITZ_CHECK_NEW(s->rate, rank);
     RITZ_CHECK_NEW(s->mu, rank);
     RITZ_CHECK_NEW(s->g, rank);
     RITZ_CHECK_NEW(s->u0, joined->motion.B.ncol + rank);

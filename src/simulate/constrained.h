@@ -1,12 +1,14 @@
 /*
- * Joined bodies in the modes of the unjoined ones, q = Phi z, Phi'M Phi = I:
+ * Joined bodies in coordinates x of which the first are the violation c of the
+ * constraints, as many as their rank. All x are orthonormal in the inner
+ * product of the mass:
  *
- *     z'' + D z' + Lambda z = B u - W'mu,    c = W z = 0,    W W' = I
+ *     q = Phi V x,  Phi'M Phi = I,  V'V = I,    x = (c, p)
+ *     x'' + D x' + K x = B u - (mu, 0),    c = 0
  *
- * W has orthonormal rows, as many as the rank of the constraints, and spans the
- * rows of C Phi. As M = I in these coordinates, W W' = I is orthonormality in
- * the inner product of the mass. The terms of a stabilisation depend on c and
- * c' alone.
+ * Phi are the modes of the unjoined bodies. The first columns of V are an
+ * orthonormal basis of the rows of C Phi. The terms of a stabilisation depend
+ * on c and c' alone: they add to the diagonal of the first rows.
  */
 #ifndef RITZ_SIMULATE_CONSTRAINED_H
 #define RITZ_SIMULATE_CONSTRAINED_H
@@ -16,14 +18,16 @@
 #include <ritz/constrained.h>
 
 typedef struct ritz_linked {
-    ritz_motion motion; /* in modes of the unjoined bodies; an impulse acts
-                           on the joined ones */
+    ritz_motion motion; /* of the unjoined bodies in coordinates x, whose M = I
+                           is not stored; an impulse acts on the joined ones */
     int64_t num_rows, rank;
-    ritz_dense W;     /* rank x n */
-    ritz_dense G;     /* num_rows x n, C Phi */
+    ritz_dense to;    /* coordinates of the bodies x n: x = to'q */
+    ritz_dense G;     /* num_rows x n, C Phi V */
     ritz_dense L;     /* num_rows x rank: lambda = L mu has least length */
     ritz_dense reach; /* outputs x rank: what -mu adds to outputs that are
                           accelerations */
+    ritz_dense peak;  /* rank x n, of V'Lambda^(1/2) V: forces along the
+                         constraints that velocities can cause */
     double highest;   /* highest eigenvalue of the joined bodies */
     double unjoined;  /* highest eigenvalue of the unjoined bodies */
     int64_t num_redundant;
@@ -32,12 +36,6 @@ typedef struct ritz_linked {
 
 ritz_status ritz_linked_new(const ritz_unjoined *bodies, ritz_linked *out);
 void ritz_linked_free(ritz_linked *joined);
-
-/** out = W x, rank numbers. */
-void ritz_linked_gap(const ritz_linked *joined, const double *x, double *out);
-/** y += alpha W'mu. */
-void ritz_linked_push(const ritz_linked *joined, double alpha, const double *mu,
-                      double *y);
 
 /*
  * A stabilisation in the equation of c. With multipliers
@@ -50,7 +48,7 @@ void ritz_linked_push(const ritz_linked *joined, double alpha, const double *mu,
  */
 typedef struct ritz_stabiliser {
     bool multipliers; /* forces along the constraints are cancelled */
-    bool projects;    /* z and z' are projected at the end of each step */
+    bool projects;    /* c and c' are 0 at the start, and after each step */
     bool implicit;    /* index 2: an integrator of its own, without terms */
     double stiffness, damping, inertia;
     double stiffest; /* with multipliers: largest stiffness of c, with that of
@@ -78,14 +76,11 @@ typedef struct ritz_index2 {
     const ritz_linked *joined; /* borrowed */
     double step;
     ritz_newmark_weights w;
-    ritz_general_factor S;   /* n */
-    ritz_general_factor WSW; /* rank */
-    ritz_dense SW;           /* n x rank, S^-1 W' */
+    ritz_general_factor S; /* n */
     int64_t num_memory;
     double *memory;          /* a, r and inputs at the end of the last step */
     double *a, *rate, *last; /* in memory */
     double *x, *v, *r;       /* n, work space */
-    double *eta, *mu;        /* rank */
 } ritz_index2;
 
 ritz_status ritz_index2_new(const ritz_linked *joined, double step, double rho,
@@ -116,7 +111,10 @@ ritz_status ritz_law_step_solve(const ritz_stabiliser *s, ritz_law_step *l,
                                 double *g);
 void ritz_law_step_free(ritz_law_step *l);
 
-/** A march of joined bodies, during which @p joined and @p terms must exist. */
+/**
+ * A march of joined bodies, during which @p joined and @p terms must exist. The
+ * initial values of its request are coordinates x.
+ */
 ritz_status ritz_constrained_march(const ritz_linked *joined,
                                    const ritz_stabiliser *terms,
                                    const ritz_simulation_request *request,

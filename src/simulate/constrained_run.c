@@ -15,6 +15,7 @@
 #include "base/tolerances.h"
 #include "linear/blas_threads.h"
 
+#include <float.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -36,6 +37,8 @@ static ritz_status read_gain(char *word, ritz_constrained_request *how)
                    "'%s' has no parameter '%s'%s%s", how->method->name, word,
                    count > 0 ? ", its first is " : "",
                    count > 0 ? gain[0].name : "");
+    RITZ_REFUSE_IF(!isnan(how->gain[k]), RITZ_ERR_ARGUMENT,
+                   "'%s' of %s is given twice", word, how->method->name);
     RITZ_REFUSE_IF(
         !ritz_text_real(equals + 1, &how->gain[k]) || how->gain[k] < 0.0,
         RITZ_ERR_ARGUMENT, "'%s' of %s is a number of 0 or more, not '%s'",
@@ -75,38 +78,72 @@ ritz_status ritz_constrained_parse(const char *text,
     return RITZ_OK;
 }
 
-/* Violations at the start, and the largest |W z''| of free bodies, from their
+static double length_of(int64_t count, const double *x)
+{
+    return x ? sqrt(ritz_motion_dot(count, x, x)) : 0.0;
+}
+
+/* Initial values in coordinates x; NULL for NULL. A violation that is rounding
+   of the values is none: stiff springs would ring with it. */
+static ritz_status take_start(const ritz_linked *j, const double *from,
+                              double **out)
+{
+    RITZ_OWN_ARRAY double *x = NULL;
+    double length = 0.0;
+
+    if (!from)
+        return RITZ_OK;
+    RITZ_CHECK_NEW(x, j->motion.n);
+    for (int64_t k = 0; k < j->motion.n; k++)
+        x[k] = ritz_motion_dot(j->to.nrow, ritz_dense_col(&j->to, k), from);
+    length = length_of(j->motion.n, x);
+    for (int64_t k = 0; k < j->rank; k++) {
+        const double *to = ritz_dense_col(&j->to, k);
+        double terms = length;
+
+        for (int64_t i = 0; i < j->to.nrow; i++)
+            terms += fabs(to[i] * from[i]);
+        if (fabs(x[k]) <= RITZ_VIOLATION_ROUNDING * terms)
+            x[k] = 0.0;
+    }
+    RITZ_MOVE(*out, x);
+    return RITZ_OK;
+}
+
+/* The nearest values in M that satisfy the constraints; returns by which part
+   of their size they were moved. */
+static double project_start(const ritz_linked *j, double *x)
+{
+    const double length = length_of(j->motion.n, x);
+    const double cut = length_of(j->rank, x);
+
+    for (int64_t k = 0; x && k < j->rank; k++)
+        x[k] = 0.0;
+    return cut > 0.0 ? cut / length : 0.0;
+}
+
+/* Violations at the start, and the largest |c''| of free bodies, from their
    initial state and the amplitudes of the inputs. */
 static ritz_status measure_start(const ritz_linked *j,
                                  const ritz_simulation_request *request,
                                  ritz_gain_scales *scales)
 {
     const ritz_motion *m = &j->motion;
-    RITZ_OWN_ARRAY double *part = NULL, *force = NULL;
-    const double *const from[] = {request->x0, request->v0};
-    double size[2] = {0.0};
+    RITZ_OWN_ARRAY double *force = NULL;
 
-    RITZ_CHECK_NEW(part, j->rank);
     RITZ_CHECK_NEW(force, m->n);
-    for (int p = 0; p < 2 && j->rank > 0; p++) {
-        for (int64_t k = 0; from[p] && k < m->n; k++)
-            force[k] = ritz_motion_dot(m->original, ritz_dense_col(&m->to, k),
-                                       from[p]);
-        ritz_linked_gap(j, force, part);
-        size[p] = sqrt(ritz_motion_dot(j->rank, part, part));
-        for (int64_t k = 0; k < m->n; k++)
-            force[k] *= p == 0 ? m->lambda[k] : sqrt(fabs(m->lambda[k]));
-        ritz_linked_gap(j, force, part);
-        scales->force += sqrt(ritz_motion_dot(j->rank, part, part));
-        memset(force, 0, (size_t)m->n * sizeof *force);
-    }
-    scales->violation = size[0];
-    scales->rate = size[1];
-    for (int64_t k = 0; request->signal && k < m->B.ncol; k++) {
-        ritz_linked_gap(j, ritz_dense_col(&m->B, k), part);
+    scales->violation = length_of(j->rank, request->x0);
+    scales->rate = length_of(j->rank, request->v0);
+    if (request->x0)
+        ritz_motion_gemv(&m->K, 1.0, request->x0, force);
+    scales->force = length_of(j->rank, force);
+    memset(force, 0, (size_t)m->n * sizeof *force);
+    if (request->v0)
+        ritz_motion_gemv(&j->peak, 1.0, request->v0, force);
+    scales->force += length_of(j->rank, force);
+    for (int64_t k = 0; request->signal && k < m->B.ncol; k++)
         scales->force += fabs(request->signal[k].amplitude) *
-                         sqrt(ritz_motion_dot(j->rank, part, part));
-    }
+                         length_of(j->rank, ritz_dense_col(&m->B, k));
     return RITZ_OK;
 }
 
@@ -143,7 +180,40 @@ static ritz_status find_terms(const ritz_linked *j,
     if (how->method == &ritz_stabilisation_sliding_mode &&
         isnan(how->gain[2])) /* the layer depends on `switch` */
         gain[2] = gain[1] * request->step;
-    return ritz_context(how->method->terms(gain, terms), how->method->name);
+    RITZ_CHECK_IN(how->method->name, how->method->terms(gain, terms));
+    RITZ_REFUSE_IF(!isfinite(terms->stiffness) || !isfinite(terms->damping) ||
+                       !isfinite(terms->stiffest),
+                   RITZ_ERR_ARGUMENT,
+                   "%s: the stiffness of the parameters is too large for a "
+                   "double",
+                   how->method->name);
+    return RITZ_OK;
+}
+
+/*
+ * An integrator computes the violation of stiff springs, f / k, as a sum of
+ * terms of up to h^2 f / (4 m). Their rounding is a force k eps h^2 f / (4 m) =
+ * eps (w h)^2 / 4 f.
+ */
+static double force_rounding(const ritz_stabiliser *terms, double step)
+{
+    return terms->multipliers ? 0.0
+                              : DBL_EPSILON * step * step * terms->stiffness /
+                                    (4.0 * (1.0 + terms->inertia));
+}
+
+static ritz_status check_forces(const ritz_constrained_request *how,
+                                double step,
+                                const ritz_constrained_facts *facts)
+{
+    RITZ_REFUSE_IF(
+        !how->any_step && facts->force_rounding > 1.0, RITZ_ERR_ARGUMENT,
+        "springs of %s are so stiff that forces in the joints would be "
+        "rounding at a step of %g s: they are accurate to a thousandth up to "
+        "%.3g Hz",
+        how->method->name, step,
+        sqrt(4.0 * RITZ_FORCE_ROUNDING / DBL_EPSILON) / (2.0 * RITZ_PI * step));
+    return RITZ_OK;
 }
 
 /* An explicit integrator is unstable at steps above 2 / omega. */
@@ -186,6 +256,7 @@ static ritz_status find_facts(const ritz_linked *j,
     facts->joined_hz = sqrt(j->highest) / (2.0 * RITZ_PI);
     facts->highest_hz = sqrt(highest) / (2.0 * RITZ_PI);
     facts->step_limit = highest > 0.0 ? 2.0 / sqrt(highest) : HUGE_VAL;
+    facts->force_rounding = force_rounding(terms, step);
     facts->unresolved =
         !terms->multipliers &&
         terms->stiffness > (1.0 + terms->inertia) * 4.0 / (step * step);
@@ -248,6 +319,7 @@ ritz_status ritz_simulate_constrained(const ritz_unjoined *bodies,
     RITZ_OWN(ritz_constrained_facts) found = {0};
     RITZ_OWN(ritz_simulation) s = {0};
     ritz_stabiliser terms = {0};
+    RITZ_OWN_ARRAY double *x0 = NULL, *v0 = NULL;
     [[maybe_unused]] RITZ_OWN(ritz_blas_single) single = {0};
     int64_t steps = 0;
 
@@ -260,9 +332,18 @@ ritz_status ritz_simulate_constrained(const ritz_unjoined *bodies,
     name_run(how, request, &integrator, name);
     asked.integrator = &integrator;
     RITZ_CHECK(ritz_linked_new(bodies, &joined));
+    RITZ_CHECK(take_start(&joined, request->x0, &x0));
+    RITZ_CHECK(take_start(&joined, request->v0, &v0));
+    asked.x0 = x0;
+    asked.v0 = v0;
     RITZ_CHECK(find_terms(&joined, how, &asked, found.gain, &terms));
     RITZ_CHECK(find_facts(&joined, &terms, asked.step, &found));
     RITZ_CHECK(check_step(how, &asked, &found));
+    RITZ_CHECK(check_forces(how, asked.step, &found));
+    if (terms.projects) {
+        found.moved = project_start(&joined, x0);
+        found.moved_rate = project_start(&joined, v0);
+    }
     RITZ_CHECK(ritz_constrained_march(&joined, &terms, &asked, &march));
     RITZ_CHECK(ritz_march_run(&march, &asked, NULL, &s));
     RITZ_CHECK(label_run(bodies, &s));

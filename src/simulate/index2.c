@@ -4,24 +4,30 @@
  * [GearLeimkuhlerGupta1985] in the scheme of [ArnoldBruls2007], with the
  * weights of [ChungHulbert1993]:
  *
- *     x_1 = x* + h^2 beta a_1 - W'eta,    x* = x_0 + h v_0 + h^2 (1/2 - beta)
- *     a_0 v_1 = v* + h gamma a_1,             v* = v_0 + h (1 - gamma) a_0 (1 -
- *     alpha_m) a_1 + alpha_m a_0 = (1 - alpha_f) r_1 + alpha_f r_0 r_1 = B u_1
- *     - Lambda x_1 - D v_1 - W'mu W x_1 = 0,    W v_1 = 0
+ *     x_1 = x* + h^2 beta a_1 - (eta, 0),
+ *     x* = x_0 + h v_0 + h^2 (1/2 - beta) a_0
+ *     v_1 = v* + h gamma a_1,    v* = v_0 + h (1 - gamma) a_0
+ *     (1 - alpha_m) a_1 + alpha_m a_0 = (1 - alpha_f) r_1 + alpha_f r_0
+ *     r_1 = B u_1 - K x_1 - D v_1 - (mu, 0)
+ *     c_1 = 0,    c_1' = 0
  *
- * r is z'' by the equation of motion, and a is an average of it over a step. As
- * W W' = I, the constraints give eta directly,
+ * r is x'' by the equation of motion, and a is an average of it over a step.
+ * The constraints give eta and the first part of a_1 directly,
  *
- *     W a_1 = -W v* / (h gamma),    eta = W x* - (h beta / gamma) W v*,
+ *     a_c = -c*' / (h gamma),    eta = c* + h^2 beta a_c,
  *
- * and with S = m I + h gamma D + h^2 beta Lambda, m = (1 - alpha_m) / (1 -
- * alpha_f), the equations for a_1 and mu are
+ * and with S = m I + h gamma D + h^2 beta K, m = (1 - alpha_m) / (1 - alpha_f),
+ * the other part of a_1 follows from
  *
- *     S a_1 + W'mu = R = B u_1 - Lambda (x* - W'eta) - D v*
- *                        - (alpha_m a_0 - alpha_f r_0) / (1 - alpha_f)
- *     (W S^-1 W') mu = W S^-1 R + W v* / (h gamma).
+ *     (S a_1)_p = R_p,   R = B u_1 - K (x* - (eta, 0)) - D v*
+ *                            - (alpha_m a_0 - alpha_f r_0) / (1 - alpha_f).
  *
- * If an input jumps between two steps, a_0 and r_0 are changed with it.
+ * S is factored with the rows of c replaced by those of the identity. mu is not
+ * needed. If an input jumps between two steps, a_0 and r_0 are changed with it.
+ *
+ * The start satisfies the constraints, and so does its acceleration: from one
+ * that does not, c is removed by forces of the first step alone, whose length
+ * is then the order of the error.
  */
 #include "simulate/constrained.h"
 
@@ -33,22 +39,19 @@ static ritz_status factor_step(ritz_index2 *s)
 {
     const ritz_motion *m = &s->joined->motion;
     const double h = s->step;
-    RITZ_OWN(ritz_dense) S = {0}, WSW = {0};
+    const double mass = (1.0 - s->w.alpha_m) / (1.0 - s->w.alpha_f);
+    RITZ_OWN(ritz_dense) S = {0};
 
     RITZ_CHECK(ritz_dense_new(m->n, m->n, &S));
-    if (m->D.val)
-        ritz_dense_add(h * s->w.gamma, &m->D, &S);
-    for (int64_t k = 0; k < m->n; k++)
-        ritz_dense_col(&S, k)[k] +=
-            (1.0 - s->w.alpha_m) / (1.0 - s->w.alpha_f) +
-            h * h * s->w.beta * m->lambda[k];
-    RITZ_CHECK_IN("a step", ritz_general_factor_new(&S, &s->S));
-    RITZ_CHECK(ritz_general_transpose(&s->joined->W, &s->SW));
-    if (s->joined->rank == 0)
-        return RITZ_OK;
-    ritz_general_factor_solve(&s->S, false, &s->SW);
-    RITZ_CHECK(ritz_dense_mul(&s->joined->W, &s->SW, &WSW));
-    return ritz_context(ritz_general_factor_new(&WSW, &s->WSW), "a step");
+    ritz_dense_add(h * s->w.gamma, &m->D, &S);
+    ritz_dense_add(h * h * s->w.beta, &m->K, &S);
+    for (int64_t k = 0; k < m->n; k++) {
+        for (int64_t i = 0; i < s->joined->rank; i++)
+            ritz_dense_col(&S, k)[i] = 0.0;
+        ritz_dense_col(&S, k)[k] =
+            k < s->joined->rank ? 1.0 : ritz_dense_col(&S, k)[k] + mass;
+    }
+    return ritz_context(ritz_general_factor_new(&S, &s->S), "a step");
 }
 
 ritz_status ritz_index2_new(const ritz_linked *joined, double step, double rho,
@@ -66,20 +69,18 @@ ritz_status ritz_index2_new(const ritz_linked *joined, double step, double rho,
     RITZ_CHECK_NEW(s.x, m->n);
     RITZ_CHECK_NEW(s.v, m->n);
     RITZ_CHECK_NEW(s.r, m->n);
-    RITZ_CHECK_NEW(s.eta, joined->rank);
-    RITZ_CHECK_NEW(s.mu, joined->rank);
     RITZ_CHECK(factor_step(&s));
     RITZ_MOVE(*out, s);
     return RITZ_OK;
 }
 
-/* r = B u - Lambda x - D v */
+/* r = B u - K x - D v */
 static void find_forces(const ritz_motion *m, const double *u, const double *x,
                         const double *v, double *r)
 {
-    for (int64_t k = 0; k < m->n; k++)
-        r[k] = -m->lambda[k] * x[k];
+    memset(r, 0, (size_t)m->n * sizeof *r);
     ritz_motion_gemv(&m->B, 1.0, u, r);
+    ritz_motion_gemv(&m->K, -1.0, x, r);
     ritz_motion_gemv(&m->D, -1.0, v, r);
 }
 
@@ -89,8 +90,7 @@ void ritz_index2_settle(ritz_index2 *s, const double *x, const double *v,
     const ritz_motion *m = &s->joined->motion;
 
     find_forces(m, u, x, v, s->a);
-    ritz_linked_gap(s->joined, s->a, s->mu);
-    ritz_linked_push(s->joined, -1.0, s->mu, s->a);
+    memset(s->a, 0, (size_t)s->joined->rank * sizeof *s->a);
     memcpy(s->rate, s->a, (size_t)m->n * sizeof *s->a);
     memcpy(s->last, u, (size_t)m->B.ncol * sizeof *u);
 }
@@ -110,43 +110,33 @@ static void follow_jumps(ritz_index2 *s, const double *u)
     }
 }
 
-/* x* - W'eta and v*; mu = W v* / (h gamma). */
+/* x* and v* */
 static void predict(ritz_index2 *s, const double *x, const double *v)
 {
-    const int64_t n = s->joined->motion.n;
-    const int64_t rank = s->joined->rank;
     const double h = s->step;
 
-    for (int64_t k = 0; k < n; k++) {
+    for (int64_t k = 0; k < s->joined->motion.n; k++) {
         s->x[k] = x[k] + h * (v[k] + h * (0.5 - s->w.beta) * s->a[k]);
         s->v[k] = v[k] + h * (1.0 - s->w.gamma) * s->a[k];
     }
-    ritz_linked_gap(s->joined, s->x, s->eta);
-    ritz_linked_gap(s->joined, s->v, s->mu);
-    for (int64_t k = 0; k < rank; k++) {
-        s->eta[k] -= h * s->w.beta / s->w.gamma * s->mu[k];
-        s->mu[k] /= h * s->w.gamma;
-    }
-    ritz_linked_push(s->joined, -1.0, s->eta, s->x);
 }
 
 /* r becomes a_1. */
 static void solve_step(ritz_index2 *s, const double *u1)
 {
     const ritz_motion *m = &s->joined->motion;
+    const double h = s->step;
     const double f1 = 1.0 - s->w.alpha_f;
-    ritz_dense right = {m->n, 1, s->r};             /* borrowed */
-    ritz_dense force = {s->joined->rank, 1, s->mu}; /* borrowed */
+    ritz_dense right = {m->n, 1, s->r}; /* borrowed */
 
+    for (int64_t k = 0; k < s->joined->rank; k++) /* x* - (eta, 0) */
+        s->x[k] = h * s->w.beta / s->w.gamma * s->v[k];
     find_forces(m, u1, s->x, s->v, s->r);
     for (int64_t k = 0; k < m->n; k++)
         s->r[k] -= (s->w.alpha_m * s->a[k] - s->w.alpha_f * s->rate[k]) / f1;
+    for (int64_t k = 0; k < s->joined->rank; k++) /* a_c */
+        s->r[k] = -s->v[k] / (h * s->w.gamma);
     ritz_general_factor_solve(&s->S, false, &right);
-    if (s->joined->rank == 0)
-        return;
-    ritz_motion_gemv(&s->joined->W, 1.0, s->r, s->mu);
-    ritz_general_factor_solve(&s->WSW, false, &force);
-    ritz_motion_gemv(&s->SW, -1.0, s->mu, s->r);
 }
 
 void ritz_index2_step(ritz_index2 *s, const double *u0, const double *u1,
@@ -173,16 +163,15 @@ void ritz_index2_step(ritz_index2 *s, const double *u0, const double *u1,
 void ritz_index2_free(ritz_index2 *s)
 {
     ritz_general_factor_free(&s->S);
-    ritz_general_factor_free(&s->WSW);
-    ritz_dense_free(&s->SW);
-    RITZ_FREE(s->memory, s->x, s->v, s->r, s->eta, s->mu);
+    RITZ_FREE(s->memory, s->x, s->v, s->r);
     *s = (ritz_index2){0};
 }
 
 static ritz_status find_terms(const double *gain, ritz_stabiliser *out)
 {
     (void)gain;
-    *out = (ritz_stabiliser){.multipliers = true, .implicit = true};
+    *out = (ritz_stabiliser){
+        .multipliers = true, .projects = true, .implicit = true};
     return RITZ_OK;
 }
 

@@ -1,14 +1,20 @@
 /*
  * Unjoined bodies in their modes, and the constraints that join them.
  *
- * With the rows of G = C Phi divided by their scales, S^-1 G = U Sigma V', the
- * rank r is the number of singular values above 1e-9 of the largest, and
+ * With the rows of C Phi divided by their scales, S^-1 C Phi = U Sigma V', the
+ * rank r is the number of singular values above 1e-9 of the largest. In the
+ * coordinates x = V'z, z being those of modes, the violation c are the first r,
+ * and
  *
- *     W = V_r',    lambda = S^-1 U_r Sigma_r^-1 mu
+ *     lambda = S^-1 U_r Sigma_r^-1 mu
  *
- * satisfies G'lambda = W'mu with the least |S lambda|. Rows that nearly depend
- * on others cause no loss of digits, because no step solves with C M^-1 C',
- * whose condition number is the square of that of the rows.
+ * satisfies (C Phi)'lambda = V_r mu with the least |S lambda|. Rows that nearly
+ * depend on others cause no loss of digits, because no step solves with
+ * C M^-1 C', whose condition number is the square of that of the rows.
+ *
+ * Neither do stiff penalties. In modes their stiffness k V_r V_r' is in every
+ * entry of K, where k = 1e16 K leaves no digit of K. In x it is in r entries of
+ * the diagonal, and c, of size f / k, has digits of its own.
  */
 #include "simulate/constrained.h"
 
@@ -110,24 +116,24 @@ static ritz_status name_redundant(const ritz_dense *scaled, ritz_linked *j)
     return RITZ_OK;
 }
 
-/* W and L, from the singular value decomposition of the scaled rows. */
-static ritz_status decompose_rows(const ritz_unjoined *b, ritz_linked *j)
+/* L and V, from the singular value decomposition of the scaled rows. */
+static ritz_status decompose_rows(const ritz_unjoined *b, ritz_linked *j,
+                                  ritz_dense *V)
 {
     const int64_t least = j->num_rows < b->n ? j->num_rows : j->G.ncol;
     RITZ_OWN_ARRAY double *scale = NULL, *sigma = NULL;
-    RITZ_OWN(ritz_dense) scaled = {0}, U = {0}, V = {0};
-    ritz_dense V_r = {0}; /* borrowed */
+    RITZ_OWN(ritz_dense) scaled = {0}, U = {0};
 
+    if (j->num_rows == 0)
+        return ritz_dense_identity(b->n, V);
     RITZ_CHECK(find_scales(b, &j->G, &scale));
     RITZ_CHECK(ritz_dense_copy(&j->G, &scaled));
     for (int64_t k = 0; k < scaled.ncol; k++)
         for (int64_t i = 0; i < scaled.nrow; i++)
             ritz_dense_col(&scaled, k)[i] /= scale[i];
-    RITZ_CHECK_IN("constraints", ritz_general_svd(&scaled, &U, &sigma, &V));
+    RITZ_CHECK_IN("constraints", ritz_general_svd(&scaled, &U, &sigma, V));
     while (j->rank < least && sigma[j->rank] > RITZ_RANK_LOSS * sigma[0])
         j->rank++;
-    V_r = ritz_dense_part(&V, 0, j->rank);
-    RITZ_CHECK(ritz_general_transpose(&V_r, &j->W));
     RITZ_CHECK(ritz_dense_new(j->num_rows, j->rank, &j->L));
     for (int64_t k = 0; k < j->rank; k++)
         for (int64_t i = 0; i < j->num_rows; i++)
@@ -136,29 +142,66 @@ static ritz_status decompose_rows(const ritz_unjoined *b, ritz_linked *j)
     return name_redundant(&scaled, j);
 }
 
-/* Highest eigenvalue of (I - W'W) Lambda (I - W'W). */
+/* V'Lambda V, and the first rows of V'Lambda^(1/2) V. */
+static ritz_status turn_stiffness(const double *lambda, const ritz_dense *V,
+                                  ritz_linked *j)
+{
+    const ritz_dense V_r = ritz_dense_part(V, 0, j->rank);
+    RITZ_OWN_ARRAY double *root = NULL;
+    RITZ_OWN(ritz_dense) Lambda = {0}, part = {0};
+
+    RITZ_CHECK_NEW(root, V->nrow);
+    RITZ_CHECK(ritz_dense_new(V->nrow, V->nrow, &Lambda));
+    for (int64_t k = 0; k < V->nrow; k++) {
+        root[k] = sqrt(fabs(lambda[k]));
+        ritz_dense_col(&Lambda, k)[k] = lambda[k];
+        j->unjoined = fmax(j->unjoined, lambda[k]);
+    }
+    RITZ_CHECK(ritz_dense_congruence(&Lambda, V, &j->motion.K));
+    RITZ_CHECK(ritz_dense_copy(V, &part));
+    ritz_dense_scale_rows(root, &part);
+    return ritz_dense_mul_tn(&V_r, &part, &j->peak);
+}
+
+/* The motion in x = V'z. An impulse does not change c'. */
+static ritz_status turn_motion(const ritz_dense *V, ritz_modal_model *modes,
+                               ritz_linked *j)
+{
+    ritz_motion *m = &j->motion;
+
+    m->form = RITZ_FORM_DENSE;
+    m->energies = true;
+    m->n = m->original = V->nrow;
+    RITZ_CHECK(turn_stiffness(modes->lambda, V, j));
+    RITZ_CHECK(ritz_dense_project(&modes->Delta, V, &m->D));
+    RITZ_CHECK(ritz_dense_mul_tn(V, &modes->B, &m->B));
+    RITZ_CHECK(ritz_dense_copy(&m->B, &m->push));
+    for (int64_t k = 0; k < m->push.ncol; k++)
+        for (int64_t i = 0; i < j->rank; i++)
+            ritz_dense_col(&m->push, k)[i] = 0.0;
+    RITZ_CHECK(ritz_dense_mul(&modes->C, V, &m->C));
+    RITZ_CHECK(ritz_dense_mul(&modes->Cv, V, &m->Cv));
+    RITZ_MOVE(m->feed, modes->feed);
+    return ritz_dense_mul(&modes->MPhi, V, &j->to);
+}
+
+static ritz_status turn_rows(const ritz_dense *V, const ritz_dense *Ca,
+                             ritz_linked *j)
+{
+    const ritz_dense V_r = ritz_dense_part(V, 0, j->rank);
+    RITZ_OWN(ritz_dense) G = {0};
+
+    RITZ_CHECK(ritz_dense_mul(&j->G, V, &G));
+    ritz_dense_replace(&j->G, &G);
+    return ritz_dense_mul(Ca, &V_r, &j->reach);
+}
+
+/* Highest eigenvalue of the joined bodies. */
 static ritz_status find_highest(ritz_linked *j)
 {
     static const ritz_stabiliser exact = {.multipliers = true};
 
-    for (int64_t k = 0; k < j->motion.n; k++)
-        j->unjoined = fmax(j->unjoined, j->motion.lambda[k]);
     return ritz_stabilised_highest(j, &exact, &j->highest);
-}
-
-/* Change of z' of the joined bodies by an impulse: push - W'W push. */
-static ritz_status join_impulses(ritz_linked *j)
-{
-    RITZ_OWN_ARRAY double *part = NULL;
-
-    RITZ_CHECK_NEW(part, j->rank);
-    for (int64_t k = 0; k < j->motion.push.ncol; k++) {
-        double *push = ritz_dense_col(&j->motion.push, k);
-
-        ritz_linked_gap(j, push, part);
-        ritz_linked_push(j, -1.0, part, push);
-    }
-    return RITZ_OK;
 }
 
 ritz_status ritz_linked_new(const ritz_unjoined *bodies, ritz_linked *out)
@@ -167,6 +210,7 @@ ritz_status ritz_linked_new(const ritz_unjoined *bodies, ritz_linked *out)
     const ritz_structure s = {bodies->K, bodies->M, bodies->D}; /* borrowed */
     RITZ_OWN(ritz_modal_model) modes = {0};
     RITZ_OWN(ritz_linked) j = {.num_rows = bodies->num_rows};
+    RITZ_OWN(ritz_dense) V = {0};
 
     RITZ_CHECK(check_sizes(bodies));
     RITZ_CHECK_IN("unjoined bodies",
@@ -179,11 +223,9 @@ ritz_status ritz_linked_new(const ritz_unjoined *bodies, ritz_linked *out)
         RITZ_CHECK(ritz_dense_mul(&bodies->C, &modes.Phi, &j.G));
     else
         RITZ_CHECK(ritz_dense_new(0, bodies->n, &j.G));
-    RITZ_CHECK(decompose_rows(bodies, &j));
-    RITZ_CHECK(ritz_dense_mul_nt(&modes.Ca, &j.W, &j.reach));
-    RITZ_CHECK(ritz_motion_take(&modes, &j.motion));
-    j.motion.energies = true;
-    RITZ_CHECK(join_impulses(&j));
+    RITZ_CHECK(decompose_rows(bodies, &j, &V));
+    RITZ_CHECK(turn_rows(&V, &modes.Ca, &j));
+    RITZ_CHECK(turn_motion(&V, &modes, &j));
     RITZ_CHECK(find_highest(&j));
     RITZ_MOVE(*out, j);
     return RITZ_OK;
@@ -192,27 +234,13 @@ ritz_status ritz_linked_new(const ritz_unjoined *bodies, ritz_linked *out)
 void ritz_linked_free(ritz_linked *joined)
 {
     ritz_motion_free(&joined->motion);
-    ritz_dense_free(&joined->W);
+    ritz_dense_free(&joined->to);
     ritz_dense_free(&joined->G);
     ritz_dense_free(&joined->L);
     ritz_dense_free(&joined->reach);
+    ritz_dense_free(&joined->peak);
     RITZ_FREE(joined->redundant);
     *joined = (ritz_linked){0};
-}
-
-void ritz_linked_gap(const ritz_linked *joined, const double *x, double *out)
-{
-    for (int64_t k = 0; k < joined->rank; k++)
-        out[k] = 0.0;
-    ritz_motion_gemv(&joined->W, 1.0, x, out);
-}
-
-void ritz_linked_push(const ritz_linked *joined, double alpha, const double *mu,
-                      double *y)
-{
-    for (int64_t j = 0; joined->rank > 0 && j < joined->W.ncol; j++)
-        y[j] += alpha * ritz_motion_dot(joined->rank,
-                                        ritz_dense_col(&joined->W, j), mu);
 }
 
 void ritz_unjoined_free(ritz_unjoined *bodies)

@@ -1,16 +1,15 @@
 /*
  * The motion of joined bodies with the terms of a stabilisation, to which any
- * ritz_integrator can be applied. With P = I - W'W, it is with multipliers
+ * ritz_integrator can be applied. With multipliers it is
  *
- *     z'' = P (B u - D z' - Lambda z) - W'(damping c' + stiffness c - g),
+ *     c'' + damping c' + stiffness c = g
+ *     p'' = (B u - D x' - K x)_p,
  *
- * and without them
+ * so that the motion that satisfies the constraints does not change, and
+ * without them
  *
- *     (I + inertia W'W) z'' + (D + damping W'W) z'
- *         + (Lambda + stiffness W'W) z = B u + W'g.
- *
- * With multipliers c'' = - damping c' - stiffness c + g for any motion of the
- * bodies, and the motion that satisfies the constraints does not change.
+ *     (1 + inertia) c'' + damping c' + stiffness c = (B u - D x' - K x)_c + g
+ *     p'' = (B u - D x' - K x)_p.
  */
 #include "simulate/constrained.h"
 
@@ -18,31 +17,16 @@
 
 #include <math.h>
 
-/* A -= W'(W A) if @p projected, then A += add W'W. */
-static ritz_status fold(const ritz_linked *j, bool projected, double add,
-                        ritz_dense *A)
+/* The rows of c become 0 if @p cleared, then A += add on their diagonal. */
+static void hold_rows(const ritz_linked *j, bool cleared, double add,
+                      ritz_dense *A)
 {
-    RITZ_OWN(ritz_dense) WA = {0}, part = {0};
-
-    if (projected && j->rank > 0) {
-        RITZ_CHECK(ritz_dense_mul(&j->W, A, &WA));
-        RITZ_CHECK(ritz_dense_mul_tn(&j->W, &WA, &part));
-        ritz_dense_add(-1.0, &part, A);
-        ritz_dense_free(&part);
+    for (int64_t i = 0; i < j->rank; i++) {
+        for (int64_t k = 0; cleared && k < A->ncol; k++)
+            ritz_dense_col(A, k)[i] = 0.0;
+        if (add != 0.0)
+            ritz_dense_col(A, i)[i] += add;
     }
-    if (add != 0.0 && j->rank > 0) {
-        RITZ_CHECK(ritz_dense_mul_tn(&j->W, &j->W, &part));
-        ritz_dense_add(add, &part, A);
-    }
-    return RITZ_OK;
-}
-
-static ritz_status fill_stiffness(const ritz_linked *j, ritz_dense *K)
-{
-    RITZ_CHECK(ritz_dense_new(j->motion.n, j->motion.n, K));
-    for (int64_t k = 0; k < j->motion.n; k++)
-        ritz_dense_col(K, k)[k] = j->motion.lambda[k];
-    return RITZ_OK;
 }
 
 /* Inputs of the bodies, followed by g. */
@@ -50,17 +34,17 @@ static ritz_status fill_inputs(const ritz_linked *j, const ritz_stabiliser *s,
                                ritz_motion *m)
 {
     const ritz_dense *B = &j->motion.B;
-    RITZ_OWN(ritz_dense) own = {0}, Wt = {0};
+    const int64_t laws = s->law ? j->rank : 0;
 
-    RITZ_CHECK(ritz_dense_copy(B, &own));
-    RITZ_CHECK(fold(j, s->multipliers, 0.0, &own));
-    RITZ_CHECK(
-        ritz_dense_new(j->motion.n, B->ncol + (s->law ? j->rank : 0), &m->B));
-    ritz_dense_put(&own, 0, 0, &m->B);
-    if (s->law) {
-        RITZ_CHECK(ritz_general_transpose(&j->W, &Wt));
-        ritz_dense_put(&Wt, 0, B->ncol, &m->B);
-    }
+    RITZ_CHECK(ritz_dense_new(j->motion.n, B->ncol + laws, &m->B));
+    ritz_dense_put(B, 0, 0, &m->B);
+    hold_rows(j, s->multipliers, 0.0, &m->B);
+    for (int64_t k = 0; k < laws; k++)
+        ritz_dense_col(&m->B, B->ncol + k)[k] = 1.0;
+    RITZ_CHECK(ritz_dense_copy(&m->B, &m->push));
+    for (int64_t k = 0; k < m->push.ncol; k++)
+        for (int64_t i = 0; i < j->rank; i++)
+            ritz_dense_col(&m->push, k)[i] /= 1.0 + s->inertia;
     return RITZ_OK;
 }
 
@@ -70,19 +54,13 @@ ritz_status ritz_stabilised_motion(const ritz_linked *joined,
     RITZ_OWN(ritz_motion) m = {.form = RITZ_FORM_DENSE, .any_step = true};
 
     m.n = m.original = joined->motion.n;
-    RITZ_CHECK(fill_stiffness(joined, &m.K));
-    RITZ_CHECK(fold(joined, s->multipliers, s->stiffness, &m.K));
-    if (joined->motion.D.val)
-        RITZ_CHECK(ritz_dense_copy(&joined->motion.D, &m.D));
-    else
-        RITZ_CHECK(ritz_dense_new(m.n, m.n, &m.D));
-    RITZ_CHECK(fold(joined, s->multipliers, s->damping, &m.D));
+    RITZ_CHECK(ritz_dense_copy(&joined->motion.K, &m.K));
+    hold_rows(joined, s->multipliers, s->stiffness, &m.K);
+    RITZ_CHECK(ritz_dense_copy(&joined->motion.D, &m.D));
+    hold_rows(joined, s->multipliers, s->damping, &m.D);
     RITZ_CHECK(ritz_dense_identity(m.n, &m.M));
-    RITZ_CHECK(fold(joined, false, s->inertia, &m.M));
+    hold_rows(joined, false, s->inertia, &m.M);
     RITZ_CHECK(fill_inputs(joined, s, &m));
-    RITZ_CHECK(ritz_dense_copy(&m.B, &m.push));
-    if (s->inertia > 0.0)
-        RITZ_CHECK(ritz_general_solve(&m.M, false, &m.push));
     RITZ_CHECK(ritz_stabilised_highest(joined, s, &m.highest));
     RITZ_MOVE(*out, m);
     return RITZ_OK;
@@ -100,24 +78,24 @@ static ritz_status find_largest(const ritz_dense *A, double *out)
 }
 
 /*
- * With multipliers, the larger of the highest eigenvalue of P Lambda P, which
- * is that of the joined bodies, and the largest stiffness of c. Without them,
- * the highest eigenvalue of F K F, F = (I + inertia W'W)^-1/2 = I + ((1 +
- * inertia)^-1/2 - 1) W'W.
+ * With multipliers, the larger of the highest eigenvalue of K_pp, which is that
+ * of the joined bodies, and the largest stiffness of c. Without them, the
+ * highest eigenvalue of F K F, F = M^-1/2.
  */
 ritz_status ritz_stabilised_highest(const ritz_linked *joined,
                                     const ritz_stabiliser *s, double *out)
 {
-    const double root =
-        s->multipliers ? -1.0 : 1.0 / sqrt(1.0 + s->inertia) - 1.0;
-    RITZ_OWN(ritz_dense) K = {0}, F = {0}, A = {0};
+    const double scale = s->multipliers ? 0.0 : 1.0 / sqrt(1.0 + s->inertia);
+    RITZ_OWN(ritz_dense) A = {0};
 
-    RITZ_CHECK(fill_stiffness(joined, &K));
+    RITZ_CHECK(ritz_dense_copy(&joined->motion.K, &A));
     if (!s->multipliers)
-        RITZ_CHECK(fold(joined, false, s->stiffness, &K));
-    RITZ_CHECK(ritz_dense_identity(joined->motion.n, &F));
-    RITZ_CHECK(fold(joined, false, root, &F));
-    RITZ_CHECK(ritz_dense_congruence(&K, &F, &A));
+        hold_rows(joined, false, s->stiffness, &A);
+    for (int64_t i = 0; i < joined->rank; i++)
+        for (int64_t k = 0; k < A.ncol; k++) {
+            ritz_dense_col(&A, k)[i] *= scale;
+            ritz_dense_col(&A, i)[k] *= scale;
+        }
     RITZ_CHECK(find_largest(&A, out));
     if (s->multipliers && joined->rank > 0)
         *out = fmax(*out, s->stiffest);

@@ -79,6 +79,24 @@ static void say_facts(cli_run *run, const ritz_unjoined *bodies,
     sink_end(run);
 }
 
+static void say_start(cli_run *run, const ritz_constrained_facts *facts)
+{
+    const double most = fmax(facts->moved, facts->moved_rate);
+
+    if (most > 0.0)
+        sink_field(run, "start", "moved,moved_rate",
+                   "moved into the constraints: displacements by %.2g of their "
+                   "size, velocities by %.2g",
+                   facts->moved, facts->moved_rate);
+    if (most > RITZ_START_MOVED)
+        cli_warn(run,
+                 "the start violates the constraints: %s were moved by %.2g %% "
+                 "of their size, to the nearest that satisfy them",
+                 facts->moved >= facts->moved_rate ? "displacements"
+                                                   : "velocities",
+                 100.0 * most);
+}
+
 static void warn_of_ringing(cli_run *run, double step,
                             const ritz_constrained_facts *facts)
 {
@@ -88,6 +106,12 @@ static void warn_of_ringing(cli_run *run, double step,
                  "ring, and forces with them; --method generalised-alpha --rho "
                  "0 ends that in some steps, index-2 has no springs",
                  step, 1.0 / (RITZ_PI * step));
+    if (facts->force_rounding > RITZ_FORCE_ROUNDING)
+        cli_warn(run,
+                 "springs are so stiff that up to %.1e of the forces in the "
+                 "joints are rounding after a load that jumps; positions are "
+                 "not",
+                 facts->force_rounding);
 }
 
 static ritz_status refuse_options(const simulation_task *task)
@@ -133,6 +157,7 @@ ritz_status simulation_constrained(simulation_task *task,
     ritz_damping_print(&task->m.damping, s.damping);
     if (s.num_state == 0) {
         say_facts(task->run, &bodies, &how, &facts);
+        say_start(task->run, &facts);
         warn_of_ringing(task->run, asked.step, &facts);
     }
     RITZ_MOVE(*out, s);

@@ -1,21 +1,21 @@
 """A penalty too stiff for the integrator
 
-A constraint is a very stiff spring, the stiffer the more exact. An explicit integrator leaves all bounds: its step has to resolve the spring. An implicit one goes on, since it is stable for any stiffness; positions look right, and the force in the joint is one that alternates between nothing and twice the right one at every step, for ever.
+A constraint is a very stiff spring, the stiffer the more exact. An explicit integrator leaves all bounds: its step has to resolve the spring. An implicit one goes on, since it is stable for any stiffness, and the force in the joint alternates between nothing and twice the right one at every step, for ever. Positions look right, until the spring is so stiff that beside it no digit is left of the springs of the bodies: then the motion is wrong too, although the constraint is satisfied to all digits.
 
-Ritz chooses the stiffness from the step, refuses what an explicit integrator cannot hold, with the limit, and warns where an implicit one lets forces ring. Its method of index 2 has no spring.
+Ritz chooses the stiffness from the step, refuses what an explicit integrator cannot hold, with the limit, and warns where an implicit one lets forces ring. It integrates the violation of the constraints as coordinates of their own, so that no stiffness takes digits from the motion. Its method of index 2 has no spring.
 """
 import numpy as np
 
 import bodies_in_time as bodies
 
 GROUP = "Runs over time"
-SPRING = 1e9
+SPRING, STIFFEST = 1e9, 1e18
 
 
-def newmark(beta):
+def newmark(beta, spring=SPRING):
     """Tip and force of the spring over time: beta 1/4 implicit, 0 explicit."""
     K, M, C, x, _ = bodies.system()
-    K = K + SPRING * C.T @ C
+    K = K + spring * C.T @ C
     h = bodies.STEP
     v, tip, force = 0 * x, [x[-1]], [0.0]
     a = np.linalg.solve(M, -K @ x)
@@ -25,7 +25,7 @@ def newmark(beta):
             new = np.linalg.solve(M + beta * h * h * K, -K @ y)
             x, v, a = y + beta * h * h * new, v + h / 2 * (a + new), new
             tip.append(x[-1])
-            force.append(abs(SPRING * (C @ x)[0]))
+            force.append(abs(spring * (C @ x)[0]))
     return np.array(tip), np.array(force)
 
 
@@ -46,6 +46,8 @@ def run(it):
     true = multiplier(t)
     it.right("the tip, implicit,", tip[-1], right, 1e-3)
     it.wrong("largest force, implicit,", np.max(force), np.max(true), 0.5)
+    lost, _ = newmark(0.25, STIFFEST)
+    it.wrong("the tip, implicit, the stiffest spring,", lost[-1], right, 1.0)
 
     bodies.scene(it)
     stiff = "penalty:hz=5000,ratio=0"
@@ -55,13 +57,19 @@ def run(it):
             "central-difference", "--constraints", stiff, "-o", "run.h5")
     it.says("stiffer ones ring, and forces with them", 0, *words,
             "--constraints", stiff, "-o", "run.h5")
+    # the spring moves a mass of 1 / (1 / 1.5 + 1 / 1) by w^2 m = k
+    hz = np.sqrt(STIFFEST / 0.6) / (2 * np.pi)
+    _, kept, _ = bodies.run(it, "--constraints", f"penalty:hz={hz:.4g},ratio=0")
+    it.right("the tip, that spring,", kept[-1], right, 1e-3)
     _, found, held = bodies.run(it, "--constraints", "index-2")
     it.right("the tip, index 2,", found[-1], right, 1e-3)
     it.right("largest force, index 2,", np.max(held), np.max(true), 1e-3)
     it.row(f"explicit: no motion; implicit: a force of {np.max(force):.2g} at "
-           "most", f"{np.max(true):.2g}",
+           f"most; a spring of 1e18: the tip at {lost[-1]:.2g}",
+           f"{np.max(true):.2g}; {right:.2g}",
            f"`raises the highest frequency`, with the limit; `stiffer ones "
-           f"ring`; by index 2 {np.max(held):.2g}")
+           f"ring`; by index 2 {np.max(held):.2g}; the tip at {kept[-1]:.2g} "
+           "with that spring")
     it.picture("""set xlabel "s"
 set ylabel "force in the joint"
 set xrange [0:2]

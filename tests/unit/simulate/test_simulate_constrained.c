@@ -6,6 +6,7 @@
 #include "testing.h"
 
 #include "joined.h"
+#include "linear/general.h"
 #include "motions.h"
 
 #include <float.h>
@@ -117,10 +118,14 @@ static void outputs_are_those_of_the_eliminated_system(void **state)
     }
 }
 
+/* A start that violates the first row: c_0 = 0.01, c'_0 = 0.3. */
+static const double off_x[] = {0.0, 0.0, 0.01, 0.0, 0.0};
+static const double off_v[] = {0.0, 0.0, 0.0, -0.3, 0.0};
+
 /* The error falls to a quarter each time the step is halved, four times from
-   one that resolves the springs of a penalty. */
+   one that resolves the springs of a penalty; with @p off from that start. */
 static void assert_order(const joined *j, const char *text,
-                         const ritz_integrator *integrator,
+                         const ritz_integrator *integrator, bool off,
                          const ritz_simulation *exact)
 {
     enum { HALVINGS = 4 };
@@ -133,6 +138,8 @@ static void assert_order(const joined *j, const char *text,
 
         request.rho = 0.5;
         request.seconds = 0.25;
+        request.x0 = off ? off_x : NULL;
+        request.v0 = off ? off_v : NULL;
         assert_ok(run(j, text, &request, &made[k]));
     }
     for (int k = 0; k <= HALVINGS; k++) {
@@ -169,7 +176,7 @@ static void multipliers_converge_at_second_order(void **state)
     assert_ok(ritz_simulate(j.eliminated, &request, &exact));
     for (size_t m = 0; m < sizeof names / sizeof *names; m++)
         for (int i = 0; i < (m < 4 ? 3 : 1); i++)
-            assert_order(&j, names[m], all[i], &exact);
+            assert_order(&j, names[m], all[i], false, &exact);
 }
 
 static void penalties_converge_at_second_order(void **state)
@@ -183,7 +190,7 @@ static void penalties_converge_at_second_order(void **state)
     assert_ok(joined_new(true, &j));
     for (size_t m = 0; m < sizeof names / sizeof *names; m++)
         for (int i = 0; i < 3; i++)
-            assert_order(&j, names[m], all[i], NULL);
+            assert_order(&j, names[m], all[i], false, NULL);
 }
 
 /* [McDaniel2000, figure 4.3]. The violation of a stiff spring is f / k, and f
@@ -229,10 +236,6 @@ static void a_static_violation_is_that_of_the_springs(void **state)
     assert_ok(run(&j, "penalty:hz=20", &request, &s));
     assert_near(last_diagnosis(&s, VIOLATION), 1.06835523e-04, 1e-12);
 }
-
-/* A start that violates the first row: c_0 = 0.01, c'_0 = 0.3. */
-static const double off_x[] = {0.0, 0.0, 0.01, 0.0, 0.0};
-static const double off_v[] = {0.0, 0.0, 0.0, -0.3, 0.0};
 
 static void a_violation_without_stabilisation_grows_with_time(void **state)
 {
@@ -312,27 +315,170 @@ static void a_sliding_mode_reaches_its_surface_in_time(void **state)
     }
 }
 
-static void projection_and_index_2_end_a_violation_in_one_step(void **state)
+/* x -= M^-1 C'(C M^-1 C')^-1 C x: the nearest values in M, with C x = 0. They
+   are P x = T (T'M T)^-1 T'M x, whose second factor is y. */
+static void project_by_hand(const joined *j, const double *x, double y[3])
+{
+    ritz_dense right = {3, 1, y};
+    RITZ_OWN(ritz_dense) MT = {0};
+
+    assert_ok(ritz_dense_mul(&j->bodies.M, &j->T, &MT));
+    for (int64_t k = 0; k < 3; k++) {
+        y[k] = 0.0;
+        for (int64_t i = 0; i < 5; i++)
+            y[k] += ritz_dense_col(&MT, k)[i] * x[i];
+    }
+    assert_ok(ritz_general_solve(&j->M, false, &right));
+}
+
+/* |x - T y| / |x| in M */
+static double moved_part(const joined *j, const double *x, const double y[3])
+{
+    double cut = 0.0, whole = 0.0;
+
+    for (int64_t i = 0; i < 5; i++) {
+        const double mass = ritz_dense_col(&j->bodies.M, i)[i];
+        double off = x[i];
+
+        for (int64_t k = 0; k < 3; k++)
+            off -= ritz_dense_col(&j->T, k)[i] * y[k];
+        cut += mass * off * off;
+        whole += mass * x[i] * x[i];
+    }
+    return sqrt(cut / whole);
+}
+
+static void projection_and_index_2_begin_at_the_nearest_start(void **state)
 {
     static const char *const names[] = {"projection", "index-2"};
     ritz_simulation_request request = asking(&ritz_integrator_modal, 1e-2);
+    double y[3], rate[3];
     RITZ_OWN(joined) j = {0};
 
     (void)state;
     assert_ok(joined_new(true, &j));
+    project_by_hand(&j, off_x, y);
+    project_by_hand(&j, off_v, rate);
     request.x0 = off_x;
     request.v0 = off_v;
     for (int m = 0; m < 2; m++) {
+        const ritz_constrained_request how = holding(names[m]);
+        RITZ_OWN(ritz_constrained_facts) facts = {0};
         RITZ_OWN(ritz_simulation) s = {0};
 
-        assert_ok(run(&j, names[m], &request, &s));
-        assert_near(s.diagnosis[VIOLATION], 0.01, 1e-15);
-        assert_near(s.diagnosis[RATE], 0.3, 1e-15);
-        for (int64_t k = 1; k < s.count; k++) { /* some eps of 0.3 and h / 4 */
+        assert_ok(
+            ritz_simulate_constrained(&j.bodies, &how, &request, &facts, &s));
+        assert_near(facts.moved, moved_part(&j, off_x, y), 1e-14);
+        assert_near(facts.moved_rate, moved_part(&j, off_v, rate), 1e-14);
+        assert_near(s.y[0], ritz_dense_col(&j.T, 0)[0] * y[0], 1e-16);
+        for (int64_t k = 0; k < s.count; k++) { /* some eps of 0.3 and h / 4 */
             assert_near(s.diagnosis[k * DIAGNOSTICS + VIOLATION], 0.0, 1e-15);
             assert_near(s.diagnosis[k * DIAGNOSTICS + RATE], 0.0, 1e-14);
         }
     }
+}
+
+/* The error against the eliminated system from the nearest start. */
+static void from_a_violated_start_both_are_of_second_order(void **state)
+{
+    ritz_simulation_request request =
+        asking(&ritz_integrator_modal, 0.01 / 32.0);
+    double y[3], rate[3];
+    RITZ_OWN(joined) j = {0};
+    RITZ_OWN(ritz_simulation) exact = {0};
+
+    (void)state;
+    assert_ok(joined_new(true, &j));
+    project_by_hand(&j, off_x, y);
+    project_by_hand(&j, off_v, rate);
+    request.seconds = 0.25;
+    request.x0 = y;
+    request.v0 = rate;
+    assert_ok(ritz_simulate(j.eliminated, &request, &exact));
+    for (int i = 0; i < 3; i++)
+        assert_order(&j, "projection", all[i], true, &exact);
+    assert_order(&j, "index-2", all[0], true, &exact);
+}
+
+/* Rounding of a start is no violation, and does not make stiff springs ring. */
+static void a_start_that_is_rounded_is_not_moved(void **state)
+{
+    const ritz_constrained_request how = holding("projection");
+    ritz_simulation_request request = asking(&ritz_integrator_modal, 1e-2);
+    RITZ_OWN(joined) j = {0};
+    RITZ_OWN(ritz_constrained_facts) facts = {0};
+    RITZ_OWN(ritz_simulation) s = {0}, stiff = {0};
+    double x[5] = {0.0};
+
+    (void)state;
+    assert_ok(joined_new(true, &j));
+    for (int64_t i = 0; i < 5; i++)
+        for (int64_t k = 0; k < 3; k++)
+            x[i] += ritz_dense_col(&j.T, k)[i] * (0.1 + 0.7 * (double)k);
+    x[2] *= 1.0 + 4.0 * DBL_EPSILON;
+    request.x0 = x;
+    assert_ok(ritz_simulate_constrained(&j.bodies, &how, &request, &facts, &s));
+    assert_true(facts.moved == 0.0 && facts.moved_rate == 0.0);
+    assert_ok(run(&j, "penalty:hz=1e9", &request, &stiff));
+    assert_true(last_diagnosis(&stiff, MULTIPLIER) <
+                10.0 * most_diagnosis(&s, MULTIPLIER));
+}
+
+/* Stiffnesses of up to 1e61 times those of the bodies. The motion is that of
+   multipliers, but for violations, whose rate is at most f / (m w): 6.4e-10 of
+   the softest. The acceleration, the third output, includes forces that
+   ring. */
+static void stiff_penalties_lose_no_digits_of_the_motion(void **state)
+{
+    static const char *const names[] = {
+        "penalty:hz=5,inertia=1e15",   "penalty:hz=1e8",
+        "penalty:hz=1e9,ratio=0.3",    "penalty:hz=1e30",
+        "penalty:hz=1e6,inertia=1e12", "hybrid:hz=1e9,smax=1"};
+    RITZ_OWN(joined) j = {0};
+
+    (void)state;
+    assert_ok(joined_new(true, &j));
+    for (int m = 0; m < 6; m++)
+        for (int i = 0; i < (m == 0 ? 3 : 2); i++) { /* explicit: the first */
+            ritz_constrained_request how = holding(names[m]);
+            ritz_simulation_request request = asking(all[i], 1e-2);
+            RITZ_OWN(ritz_simulation) s = {0}, exact = {0};
+
+            how.any_step = true; /* forces may be rounding */
+            request.rho = 1.0;   /* less ends what rings, by its velocity */
+            assert_ok(run(&j, "none", &request, &exact));
+            assert_ok(
+                ritz_simulate_constrained(&j.bodies, &how, &request, NULL, &s));
+            for (int64_t k = 0; k < s.count; k++)
+                for (int64_t y = 3 * k; y < 3 * k + 2; y++)
+                    assert_near(s.y[y], exact.y[y], 7e-10);
+        }
+}
+
+/* eps (w h)^2 / 4, and the frequencies at which it is 1e-3 and 1 */
+static void
+forces_of_stiff_springs_are_rounding_from_a_frequency_on(void **state)
+{
+    const ritz_simulation_request request =
+        asking(&ritz_integrator_trapezoidal, 1e-2);
+    ritz_constrained_request how = holding("penalty:hz=2.1e9,inertia=7");
+    RITZ_OWN(joined) j = {0};
+    RITZ_OWN(ritz_constrained_facts) facts = {0};
+    RITZ_OWN(ritz_simulation) s = {0};
+
+    (void)state;
+    assert_ok(joined_new(true, &j));
+    assert_ok(ritz_simulate_constrained(&j.bodies, &how, &request, &facts, &s));
+    assert_near(facts.force_rounding, 0.96645, 1e-4);
+    ritz_simulation_free(&s);
+    ritz_constrained_facts_free(&facts);
+    how = holding("penalty:hz=2.2e9");
+    assert_fails(
+        ritz_simulate_constrained(&j.bodies, &how, &request, &facts, &s),
+        RITZ_ERR_ARGUMENT, "to a thousandth up to 6.76e+07 Hz");
+    how = holding("projection");
+    assert_ok(ritz_simulate_constrained(&j.bodies, &how, &request, &facts, &s));
+    assert_true(facts.force_rounding == 0.0);
 }
 
 /* With the trapezoidal rule energies balance to rounding, including those of
@@ -634,7 +780,8 @@ static void unknown_words_are_refused_by_name(void **state)
                {"penalty:hz=-1", "is a number of 0 or more, not '-1'"},
                {"penalty:hz=inf", "is a number of 0 or more, not 'inf'"},
                {"penalty:", "'' is not NAME=VALUE"},
-               {"penalty:hz=nan", "is a number of 0 or more, not 'nan'"}};
+               {"penalty:hz=nan", "is a number of 0 or more, not 'nan'"},
+               {"penalty:hz=1,hz=1", "'hz' of penalty is given twice"}};
     ritz_constrained_request how = {0};
 
     (void)state;
@@ -660,6 +807,8 @@ static void requests_without_sense_are_refused(void **state)
     request.coordinates = false;
     assert_fails(run(&j, "penalty:hz=0", &request, &s), RITZ_ERR_ARGUMENT,
                  "a frequency above 0");
+    assert_fails(run(&j, "penalty:hz=1e155", &request, &s), RITZ_ERR_ARGUMENT,
+                 "too large for a double");
     assert_fails(run(&j, "sliding-mode:switch=1,layer=0", &request, &s),
                  RITZ_ERR_ARGUMENT, "'layer' is positive");
     assert_fails(run(&j, "hybrid:smax=0", &request, &s), RITZ_ERR_ARGUMENT,
@@ -743,7 +892,11 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_violation_without_stabilisation_grows_with_time),
     cmocka_unit_test(baumgarte_ends_a_violation_by_its_closed_form),
     cmocka_unit_test(a_sliding_mode_reaches_its_surface_in_time),
-    cmocka_unit_test(projection_and_index_2_end_a_violation_in_one_step),
+    cmocka_unit_test(projection_and_index_2_begin_at_the_nearest_start),
+    cmocka_unit_test(from_a_violated_start_both_are_of_second_order),
+    cmocka_unit_test(a_start_that_is_rounded_is_not_moved),
+    cmocka_unit_test(stiff_penalties_lose_no_digits_of_the_motion),
+    cmocka_unit_test(forces_of_stiff_springs_are_rounding_from_a_frequency_on),
     cmocka_unit_test(energies_balance_as_those_of_the_integrator),
     cmocka_unit_test(index_2_balances_energy_at_its_order),
     cmocka_unit_test(redundant_rows_are_named_and_share_forces),
