@@ -139,6 +139,7 @@ typedef struct ritz_simulation {
     double *y; /* y[k * num_outputs + i] */
     double *kinetic, *potential, *dissipated, *work, *balance; /* count, or
                                                                   all NULL */
+    double energy_rounding;  /* energies below it are rounding; 0: not known */
     int64_t num_diagnostics; /* values of the method, such as the violation of
                                 constraints */
     char (*diagnostic)[RITZ_NAME_SIZE]; /* their names */

@@ -103,6 +103,11 @@ static ritz_status settle_simulation(const ritz_place *place)
     return RITZ_OK;
 }
 
+static bool has_rounding(const void *object)
+{
+    return ((const ritz_simulation *)object)->energy_rounding > 0.0;
+}
+
 static const ritz_member simulation_members[] = {
     {"method", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_simulation, integrator), "",
      "integrator that computed the response"},
@@ -136,6 +141,10 @@ static const ritz_member simulation_members[] = {
     {"energies/balance", SET_REAL, RITZ_AT(ritz_simulation, balance), "k",
      "kinetic + potential + dissipated - work - energy at the start",
      .optional = "energies"},
+    {"energy_rounding", ATTRIBUTE_REAL,
+     RITZ_AT(ritz_simulation, energy_rounding), "",
+     "energies below it are rounding of larger terms", .optional = "",
+     .has = has_rounding},
     {"diagnostics/names", SET_NAMES, RITZ_AT(ritz_simulation, diagnostic), "d",
      "distinct names of values of the run itself", .optional = "diagnostics",
      .some = 'd'},

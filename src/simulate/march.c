@@ -3,6 +3,9 @@
 
 #include "base/alloc.h"
 
+#include <float.h>
+#include <math.h>
+
 ritz_status ritz_march_new(const ritz_motion *motion,
                            const ritz_integrator *integrator, double step,
                            double rho, ritz_march *out)
@@ -50,6 +53,33 @@ static double sparse_quadratic(const ritz_sparse *A, const double *x)
         for (int64_t k = A->colptr[j]; k < A->colptr[j + 1]; k++)
             sum += x[A->rowind[k]] * A->val[k] * x[j];
     return 0.5 * sum;
+}
+
+/* sqrt(|K_jj|) |x_j| */
+static double find_term(const ritz_motion *m, int64_t j, double x)
+{
+    double diagonal = 0.0;
+
+    if (m->lambda)
+        diagonal = m->lambda[j];
+    else if (m->K.val)
+        diagonal = ritz_dense_col(&m->K, j)[j];
+    for (int64_t k = m->sK.colptr ? m->sK.colptr[j] : 0;
+         m->sK.colptr && k < m->sK.colptr[j + 1]; k++)
+        if (m->sK.rowind[k] == j)
+            diagonal = m->sK.val[k];
+    return sqrt(fabs(diagonal)) * fabs(x);
+}
+
+/* |x_i K_ij x_j| <= sqrt(K_ii) |x_i| sqrt(K_jj) |x_j| of a K without negative
+   eigenvalues. */
+double ritz_march_energy_rounding(const ritz_march *march)
+{
+    double sum = 0.0;
+
+    for (int64_t j = 0; j < march->motion->n; j++)
+        sum += find_term(march->motion, j, march->x[j]);
+    return DBL_EPSILON * sum * sum;
 }
 
 void ritz_march_energy(const ritz_march *march, double *kinetic,

@@ -161,6 +161,10 @@ void ritz_march_outputs(const ritz_march *march, const double *u, double *y);
 void ritz_march_energy(const ritz_march *march, double *kinetic,
                        double *potential);
 
+/** Rounding of the potential energy of the present state: eps times the terms
+ * whose sum it is. 0 if the stiffness is not that of the motion. */
+double ritz_march_energy_rounding(const ritz_march *march);
+
 /* Weights of Newmark's integrators and of generalised-alpha. */
 typedef struct ritz_newmark_weights {
     double alpha_m, alpha_f, beta, gamma;

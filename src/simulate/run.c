@@ -165,6 +165,8 @@ static void note_energy(const ritz_march *march, double start, int64_t k,
     if (!s->balance)
         return;
     ritz_march_energy(march, &s->kinetic[k], &s->potential[k]);
+    s->energy_rounding =
+        fmax(s->energy_rounding, ritz_march_energy_rounding(march));
     s->dissipated[k] = march->dissipated;
     s->work[k] = march->work;
     s->balance[k] = s->kinetic[k] + s->potential[k] + march->dissipated -
@@ -281,6 +283,7 @@ static void copy_times(const ritz_simulation *from, ritz_simulation *s)
     double *const into[] = {s->kinetic, s->potential, s->dissipated, s->work,
                             s->balance};
 
+    s->energy_rounding = from->energy_rounding;
     copy_values(s->seconds, from->seconds, from->count);
     copy_values(s->u, from->u, from->count * s->num_inputs);
     copy_values(s->diagnosis, from->diagnosis,

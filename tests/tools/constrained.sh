@@ -98,6 +98,7 @@ expect 0 'moved into the constraints: displacements by' \
     ritz-simulate $near --initial mode:10 --start-digits 4 -o near.h5
 ritz-simulate $near --initial mode:10 -o near.h5 >log 2>&1
 works '  and a start that satisfies them is not' lacks 'moved into' log
+expect 0 'energies       at most' ritz-simulate $near --initial mode:1 -o near.h5
 
 expect 0 '' ritz-chart diagnostics drift-none.h5 drift-baumgarte.h5 \
     drift-projection.h5 -o drift.svg

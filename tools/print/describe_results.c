@@ -32,17 +32,28 @@ static double find_peak(const ritz_simulation *s, int64_t i, double *when)
     return most;
 }
 
-/* Largest error of the energy balance over the largest energy. */
-static double find_imbalance(const ritz_simulation *s)
+/* Largest error of the energy balance over the largest energy. Energies that are
+   rounding, as those of a rigid body that was moved, balance with nothing: their
+   size is printed. */
+static void describe_energies(cli_run *run, const ritz_simulation *s)
 {
     double off = 0.0, size = 0.0;
 
+    if (!s->balance)
+        return;
     for (int64_t k = 0; k < s->count; k++) {
         off = fmax(off, fabs(s->balance[k]));
         size = fmax(size, fabs(s->kinetic[k]) + fabs(s->potential[k]) +
                               fabs(s->dissipated[k]));
     }
-    return size > 0.0 ? off / size : 0.0;
+    if (size > s->energy_rounding) {
+        sink_field(run, "energies", "imbalance",
+                   "balance to %.1e of the largest", off / size);
+        return;
+    }
+    sink_set(run, "imbalance", "%g", nan(""));
+    sink_field(run, "energies", "largest_energy", "at most %.1e%s", size,
+               size > 0.0 ? ", which is rounding" : "");
 }
 
 /* Least, greatest and last value of each diagnostic. */
@@ -91,9 +102,7 @@ ritz_status describe_simulation(cli_run *run, const ritz_simulation *s)
     if (s->num_coordinates > 0)
         sink_field(run, "coordinates", "", "%ld, with rates and accelerations",
                    s->num_coordinates);
-    if (s->balance)
-        sink_field(run, "energies", "imbalance",
-                   "balance to %.1e of the largest", find_imbalance(s));
+    describe_energies(run, s);
     describe_diagnostics(run, s);
     return RITZ_OK;
 }

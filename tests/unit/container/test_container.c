@@ -464,6 +464,7 @@ static void a_simulation_comes_back(void **)
     assert_same(a.dissipated, b.dissipated, a.count, 8);
     assert_same(a.work, b.work, a.count, 8);
     assert_same(a.balance, b.balance, a.count, 8);
+    assert_near(a.energy_rounding, b.energy_rounding, 0.0);
     assert_int_equal(a.num_state, b.num_state);
     assert_same(a.state, b.state, a.num_state, 8);
     assert_int_equal(a.num_diagnostics, b.num_diagnostics);
