@@ -57,6 +57,9 @@ void ritz_path_free(ritz_path *path);
  * where S has the rows of joint springs and D_r is the damping of ratios. Cubic
  * splines interpolate F between the knots, with errors of order 4 in T, 3 in
  * T_x and 2 in T_xx.
+ *
+ * If a hinge turns by more than 360 degrees, the knots cover one turn: T(x + 2
+ * pi) = T(x) turn, so that the cost does not grow with the number of turns.
  */
 typedef struct ritz_swept_model {
     char sweep[RITZ_NAME_SIZE]; /* "clock" */
@@ -67,6 +70,7 @@ typedef struct ritz_swept_model {
     int64_t num_springs;
     double *stiffness, *damping; /* num_springs */
     bool has_ratios;             /* F has rows D_r */
+    ritz_dense turn; /* r x r, orthogonal; {0}: knots cover the whole range */
     ritz_dense F, bend; /* r columns for each knot; second derivatives */
     ritz_dense M, K, D; /* Q x Q, of all bodies; D {0}: none */
     ritz_dense G, H;    /* Q x Q, phi'M N phi and phi'N'M N phi, N phi = n x phi
@@ -157,7 +161,8 @@ ritz_status ritz_swept_lost_force(const ritz_swept_model *model, int64_t input,
  *                   only exchanges matrices
  * @param[in] request  its integrator must be the trapezoidal one; x0 and v0 are
  *                     of all modes at the start
- * @return RITZ_ERR_ARGUMENT if the path leaves the range of the model, if it
+ * @return RITZ_ERR_ARGUMENT if the path leaves the range of the model, if a
+ *         hinge turns by more than a quarter turn in a step, if the path
  *         ends before the run while the setting still moves, or if the basis
  *         spans nothing of the initial state
  * @cost   O(r^3) a step, and O(Q^2 r) each time x passes a knot

@@ -8,7 +8,8 @@
  * which is Procrustes' rotation [Schoenemann1966]: it chooses signs, turns
  * modes within clusters and exchanges modes that cross. T_i+1'M T_i is then
  * symmetric. If the smallest s is small, the space of r modes is not
- * continuous, because mode r changes places with mode r + 1.
+ * continuous, because mode r changes places with mode r + 1. A hinge that turns
+ * by more than 360 degrees has the knots of one turn.
  */
 #include "assembly/swept.h"
 
@@ -111,6 +112,26 @@ typedef struct sweep_gap {
     int64_t at;
 } sweep_gap;
 
+/* Find the rotation of T in a whole turn, T_last = T_first O. */
+static ritz_status close_turn(const ritz_sweeper *w, ritz_swept_model *m)
+{
+    const int64_t r = m->order, Q = m->M.nrow;
+    RITZ_OWN(ritz_dense) first = {0}, last = {0}, A = {0};
+    double least = 1.0;
+
+    RITZ_CHECK(ritz_dense_block(&m->F, 0, Q, 0, r, &first));
+    RITZ_CHECK(ritz_dense_block(&m->F, 0, Q, (m->count - 1) * r, r, &last));
+    RITZ_CHECK(ritz_sweep_correlate(&first, &m->M, &last, &A));
+    ritz_dense_free(&m->turn);
+    RITZ_CHECK(find_rotation(&A, &least, &m->turn));
+    RITZ_REFUSE_IF(least < 1.0 - RITZ_SWEPT_AXIS, RITZ_ERR_ARGUMENT,
+                   "after a whole turn of '%s' the space of %" PRId64
+                   " modes is another one: turn it by 360 degrees at most, or "
+                   "keep more modes",
+                   ritz_sweep_name(w), r);
+    return ritz_swept_bend_around(m);
+}
+
 /* F of all knots, each aligned with the knot before. */
 static ritz_status align_knots(const ritz_sweeper *w,
                                const ritz_sweep_grid *grid, ritz_swept_model *m,
@@ -144,7 +165,7 @@ static ritz_status align_knots(const ritz_sweeper *w,
         ritz_dense_free(&T);
         RITZ_CHECK(ritz_dense_block(&made, 0, Q, 0, r, &T));
     }
-    return ritz_swept_bend(m);
+    return w->whole ? close_turn(w, m) : ritz_swept_bend(m);
 }
 
 /* Largest sqrt(x'A x) of the columns of X. */
@@ -209,15 +230,12 @@ static ritz_status refuse_gap(const ritz_sweeper *w,
 static ritz_status refine(const ritz_sweeper *w, ritz_sweep_grid *grid,
                           ritz_swept_model *m)
 {
-    const int64_t enough = w->fewest * (ENOUGH / RITZ_SWEEP_FEWEST);
-
     while (true) {
         RITZ_OWN(ritz_sweep_grid) middles = {0};
         sweep_gap gap;
 
         RITZ_CHECK(align_knots(w, grid, m, &gap));
-        if ((grid->count > enough || grid->count > RITZ_SWEEP_MOST) &&
-            gap.overlap < RITZ_SWEPT_OVERLAP)
+        if (grid->count > ENOUGH && gap.overlap < RITZ_SWEPT_OVERLAP)
             return refuse_gap(w, grid, m->order, &gap);
         RITZ_CHECK(ritz_sweep_middles(w, grid, &middles));
         RITZ_CHECK(ritz_sweep_check(w, &middles));
@@ -303,6 +321,10 @@ ritz_status ritz_stage_sweep(const ritz_stage *stage,
         w.unit = RITZ_PI / 180.0;
     w.first = w.unit * asked->range[0];
     w.last = w.unit * asked->range[1];
+    if (w.unit != 1.0 && asked->range[1] - asked->range[0] > 360.0) {
+        w.whole = true;
+        w.last = w.first + 2.0 * RITZ_PI;
+    }
     m.unit = w.unit;
     memcpy(m.sweep, ritz_sweep_name(&w), sizeof m.sweep);
     m.has_ratios = asked->damping && asked->damping->kind != RITZ_DAMPING_NONE;

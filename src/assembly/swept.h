@@ -6,7 +6,9 @@
 #include "assembly/assembly.h"
 #include "simulate/swept.h"
 
-/* Numbers of intervals: at first, and at most. */
+/* Numbers of intervals: at first, and at most. The first ones of a hinge are at
+   most 45 degrees: from settings that are whole turns apart, neither its axis
+   nor an error of the spline is seen. */
 enum { RITZ_SWEEP_FEWEST = 8, RITZ_SWEEP_MOST = 1024 };
 
 /* The system at one setting. */
@@ -27,8 +29,8 @@ typedef struct ritz_sweep_grid {
 typedef struct ritz_sweeper {
     const ritz_stage *stage;
     const ritz_sweep_request *asked;
-    double unit, first, last; /* of x */
-    int64_t fewest;           /* intervals at first */
+    double unit, first, last; /* of x, at most one turn of a hinge */
+    bool whole;               /* it is one turn of several */
 } ritz_sweeper;
 
 static inline const char *ritz_sweep_name(const ritz_sweeper *w)
@@ -38,8 +40,8 @@ static inline const char *ritz_sweep_name(const ritz_sweeper *w)
 
 void ritz_sweep_grid_free(ritz_sweep_grid *grid);
 
-/** Choose the number of intervals at first, and compute the first grid. */
-ritz_status ritz_sweep_begin(ritz_sweeper *w, ritz_sweep_grid *out);
+/** The first grid. */
+ritz_status ritz_sweep_begin(const ritz_sweeper *w, ritz_sweep_grid *out);
 
 /** Knots half way between those of a grid. */
 ritz_status ritz_sweep_middles(const ritz_sweeper *w,

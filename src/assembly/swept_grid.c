@@ -9,10 +9,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Degrees between the first settings of a hinge, at most: from settings that are
-   whole turns apart, neither its axis nor an error of the spline is seen. */
-enum { COARSEST = 45 };
-
 static void ritz_sweep_knot_free(ritz_sweep_knot *k)
 {
     ritz_dense_free(&k->V);
@@ -80,32 +76,12 @@ static ritz_status make_knots(const ritz_sweeper *w, int64_t count,
     return RITZ_OK;
 }
 
-static ritz_status choose_fewest(ritz_sweeper *w)
+ritz_status ritz_sweep_begin(const ritz_sweeper *w, ritz_sweep_grid *out)
 {
-    const double *range = w->asked->range;
-    const double wanted = ceil((range[1] - range[0]) / COARSEST);
-
-    w->fewest = RITZ_SWEEP_FEWEST;
-    if (!w->stage->scene->sweep[w->asked->sweep].turns)
-        return RITZ_OK;
-    RITZ_REFUSE_IF(wanted > RITZ_SWEEP_MOST, RITZ_ERR_ARGUMENT,
-                   "'%s' turns from %g to %g degrees: there are at most %d "
-                   "settings, %d degrees apart. Turn it by less",
-                   ritz_sweep_name(w), range[0], range[1], RITZ_SWEEP_MOST + 1,
-                   COARSEST);
-    if (wanted > RITZ_SWEEP_FEWEST)
-        w->fewest = (int64_t)wanted;
-    return RITZ_OK;
-}
-
-ritz_status ritz_sweep_begin(ritz_sweeper *w, ritz_sweep_grid *out)
-{
-    double spacing = 0.0;
+    const double spacing = (w->last - w->first) / RITZ_SWEEP_FEWEST;
     RITZ_OWN_ARRAY double *x = NULL;
 
-    RITZ_CHECK(choose_fewest(w));
-    spacing = (w->last - w->first) / (double)w->fewest;
-    out->count = w->fewest + 1;
+    out->count = RITZ_SWEEP_FEWEST + 1;
     RITZ_CHECK_NEW(out->knot, out->count);
     RITZ_CHECK_NEW(x, out->count);
     for (int64_t k = 0; k < out->count; k++)

@@ -159,15 +159,16 @@ static ritz_status add_ratios(swept *s)
 static ritz_status refresh(double t, swept *s)
 {
     const ritz_swept_model *m = s->model;
-    double at[3];
+    double at[3], turns = 0.0, x = 0.0;
 
     ritz_path_at(s->path, t, at);
+    x = ritz_swept_within(m, m->unit * at[0], &turns);
     for (int k = 0; k < 2; k++) {
         s->rate[k] = m->unit * at[k + 1];
         s->used[k] = s->terms ? s->rate[k] : 0.0;
     }
-    RITZ_CHECK(ritz_swept_piece_move(m, m->unit * at[0], &s->piece));
-    ritz_swept_weights(m, s->piece.at, m->unit * at[0], s->w);
+    RITZ_CHECK(ritz_swept_piece_move(m, x, &s->piece));
+    ritz_swept_weights(m, s->piece.at, x, s->w);
     ritz_swept_combine(&s->piece.ST, s->w[0], &s->R);
     ritz_swept_combine(&s->piece.ST, s->w[1], &s->Rx);
     fill_matrices(s);
@@ -405,6 +406,28 @@ static ritz_status move_step(ritz_march *march, const double *u1, swept *s)
     return RITZ_OK;
 }
 
+/* Express the state in the basis of the turn in which a step ends. */
+static ritz_status turn_state(ritz_march *march, swept *s)
+{
+    const ritz_swept_model *m = s->model;
+    const double h = march->step, t = (double)(march->steps + 1) * h;
+    double *const state[] = {march->x, march->v, s->a};
+    double before[3], after[3], turns[2];
+
+    ritz_path_at(s->path, (double)march->steps * h, before);
+    ritz_path_at(s->path, t, after);
+    RITZ_REFUSE_IF(m->unit != 1.0 && fabs(after[0] - before[0]) > 90.0,
+                   RITZ_ERR_ARGUMENT,
+                   "'%s' turns by %.3g degrees in the step that ends at %g s: "
+                   "take shorter steps",
+                   m->sweep, fabs(after[0] - before[0]), t);
+    (void)ritz_swept_within(m, m->unit * before[0], &turns[0]);
+    (void)ritz_swept_within(m, m->unit * after[0], &turns[1]);
+    for (int k = 0; k < 3 && turns[0] != turns[1]; k++)
+        ritz_swept_turn(m, turns[1] < turns[0], state[k], s->o);
+    return RITZ_OK;
+}
+
 static ritz_status advance_swept(ritz_march *march, const double *u0,
                                  const double *u1)
 {
@@ -420,6 +443,7 @@ static ritz_status advance_swept(ritz_march *march, const double *u0,
     memcpy(before, s->power, sizeof before);
     for (int64_t j = 0; j < s->B.ncol; j++)
         march->work -= 0.5 * (u0[j] + u1[j]) * s->along[j];
+    RITZ_CHECK(turn_state(march, s));
     RITZ_CHECK(refresh((double)(march->steps + 1) * h, s));
     RITZ_CHECK(move_step(march, u1, s));
     find_powers(march, u1, s);
@@ -549,7 +573,8 @@ static ritz_status check_request(const ritz_swept_model *model,
     double range[2];
 
     ritz_path_range(path, range);
-    RITZ_REFUSE_IF(range[0] < ends[0] - slack || range[1] > ends[1] + slack,
+    RITZ_REFUSE_IF(!model->turn.val && (range[0] < ends[0] - slack ||
+                                        range[1] > ends[1] + slack),
                    RITZ_ERR_ARGUMENT,
                    "'%s' goes from %g to %g, beyond the model's %g to %g",
                    model->sweep, range[0], range[1], ends[0], ends[1]);

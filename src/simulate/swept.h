@@ -5,13 +5,35 @@
 #include <ritz/swept.h>
 
 /**
- * Compute the second derivatives of the splines through the knots of F.
+ * Compute the second derivatives of the splines through the knots of F, whose
+ * ends are "not a knot".
  *
  * @param[in,out] model  bend is written
  */
 ritz_status ritz_swept_bend(ritz_swept_model *model);
 
-/** F at x, rows x r; x may be beyond the ends by rounding. */
+/**
+ * The same of a model with `turn`: F at the last knot becomes that of the first
+ * knot one turn further, and the spline is continuous over all turns.
+ */
+ritz_status ritz_swept_bend_around(ritz_swept_model *model);
+
+/** The x of the knots that a setting x has, and how many turns it is away;
+ * without `turn` x itself, and 0. */
+double ritz_swept_within(const ritz_swept_model *model, double x,
+                         double *turns);
+
+/**
+ * q of the basis at x - 2 pi for q of that at x, which spans the same motions:
+ * q = turn q, or turn'q if @p back.
+ *
+ * @param[out] work  r
+ */
+void ritz_swept_turn(const ritz_swept_model *model, bool back, double *q,
+                     double *work);
+
+/** F at x, rows x r; x may be beyond the ends by rounding. With `turn`, F is
+ * that of the turn of the knots. */
 ritz_status ritz_swept_values(const ritz_swept_model *model, double x,
                               ritz_dense *out);
 
@@ -29,7 +51,7 @@ typedef struct ritz_swept_piece {
     ritz_dense C, Cv, Ca;     /* outputs x 4r: C X, ... */
 } ritz_swept_piece;
 
-/** Compute the piece that contains x, unless @p piece is that piece. */
+/** Compute the piece that contains x, which is within the knots, unless @p piece is that piece. */
 ritz_status ritz_swept_piece_move(const ritz_swept_model *model, double x,
                                   ritz_swept_piece *piece);
 void ritz_swept_piece_free(ritz_swept_piece *piece);

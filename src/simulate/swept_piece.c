@@ -117,13 +117,23 @@ static ritz_status find_powers(const ritz_swept_model *m, int64_t at,
     return RITZ_OK;
 }
 
+double ritz_swept_within(const ritz_swept_model *m, double x, double *turns)
+{
+    const double whole = (double)(m->count - 1) * m->spacing;
+
+    *turns = m->turn.val ? floor((x - m->first) / whole) : 0.0;
+    return x - *turns * whole;
+}
+
 ritz_status ritz_swept_values(const ritz_swept_model *m, double x,
                               ritz_dense *out)
 {
-    const int64_t at = find_piece(m, x);
     RITZ_OWN(ritz_dense) powers = {0};
-    double w[3][POWERS];
+    double w[3][POWERS], turns = 0.0;
+    int64_t at = 0;
 
+    x = ritz_swept_within(m, x, &turns);
+    at = find_piece(m, x);
     RITZ_CHECK(find_powers(m, at, &powers));
     ritz_swept_weights(m, at, x, w);
     RITZ_CHECK(ritz_dense_new(m->F.nrow, m->order, out));
@@ -234,10 +244,10 @@ void ritz_swept_spread(const double w[static 4], double factor, int64_t r,
 
 void ritz_swept_model_free(ritz_swept_model *m)
 {
-    enum { OWNED = 9 };
-    ritz_dense *const all[OWNED] = {&m->F, &m->bend,  &m->M,
-                                    &m->K, &m->D,     &m->G,
-                                    &m->H, &m->start, &m->start_B};
+    enum { OWNED = 10 };
+    ritz_dense *const all[OWNED] = {&m->F,     &m->bend,   &m->M, &m->K,
+                                    &m->D,     &m->G,      &m->H, &m->turn,
+                                    &m->start, &m->start_B};
 
     for (int k = 0; k < OWNED; k++)
         ritz_dense_free(all[k]);

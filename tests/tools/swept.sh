@@ -36,6 +36,11 @@ expect 0 'JOINT=FROM:TO:TIME' ritz-simulate --help
         --sweep-modes 14 $run -o table.h5
     expect 0 'path.tsv' ritz-info table.h5
 
+    # Whole turns cost as much as one.
+    json 0 ritz-simulate --sweep clock=0:36000:4000s --seconds 1 \
+        --sweep-modes 14 $run -o turns.h5
+    holds 'a hundred turns have the settings of one' 'j["settings"] == 129'
+
     # What the basis does not span of an initial state; by NumPy, 4 / (1 + 4) of
     # the mass norm of modes 10 and 16.
     for k in $(seq 36); do

@@ -326,7 +326,8 @@ static void warn_of_rigid(const simulation_task *d)
             d->run,
             "%" PRId64 " rigid motions: forces of the commanded motion "
             "that turn with the bodies are left out, and rigid motions are "
-            "off by about the square of the angle",
+            "off by about the square of the angle in radians, exponentially "
+            "over whole turns",
             count);
 }
 
