@@ -38,7 +38,10 @@ static const cli_program program = {
                   "a scene, whose system at --at is simulated",
                   false}},
     .summary = "Time response to inputs and initial values, with its "
-               "energies, and what a\nsimulated second costs.",
+               "energies, and what a\nsimulated second costs.\n"
+               "After SIGINT or SIGTERM, write what is done to "
+               "OUTPUT.interrupted; the same command\nremoves it when it "
+               "completes.",
     .example = "ritz-simulate reduced.h5 --seconds 10 --input torque=step "
                "-o run.h5",
     .output = "the time response",
@@ -119,8 +122,8 @@ static const cli_program program = {
                  "vectors are added until their share of the residual is "     \
                  "above E, at most 1 - 1e-9 [0.99]"),                          \
         CLI_WORD("share-of", &(it)->share_of, "model|library",                 \
-                 "that share is of the whole residual, or of its part in the " \
-                 "library [model]"),                                           \
+                 "the share of --indicator is of the whole residual, or of "   \
+                 "its part in the library [model]"),                           \
         CLI_FLAG(                                                              \
             "look-ahead", &(it)->look_ahead,                                   \
             "choose vectors for the inputs at the end of a switch interval "   \
@@ -173,7 +176,8 @@ int main(int argc, char **argv)
                  "write a checkpoint to FILE about every half minute; the same "
                  "command continues from it"),
         CLI_FLAG("cost", &given.cost,
-                 "report what a simulated second costs, by each integrator"),
+                 "report what a simulated second costs, by each integrator, "
+                 "and of a closed loop"),
         CLI_PAIR("band-hz", given.band_hz, "F,F",
                  "band that --cost resolves [that of a system; else all "
                  "frequencies]"),
@@ -189,6 +193,6 @@ int main(int argc, char **argv)
     cli_parse(&program, options, argc, argv, &run);
     status = cli_finish(&run, simulation_run(&run, &given));
     if (status == 0)
-        simulation_remove_checkpoint(&given);
+        simulation_remove_leftovers(&run, &given);
     return status;
 }

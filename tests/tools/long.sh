@@ -54,6 +54,12 @@ works '  after two signals both files are there' \
 expect 0 'time response' $run
 same '  the third run gives the values of an uninterrupted one' run.h5
 works '  and its checkpoint is gone' test ! -e run.ck
+works '  and what the interrupted runs had left' test ! -e run.h5.interrupted
+mv kept.h5.interrupted whole.h5.interrupted
+long whole ''
+expect 0 'time response' $run
+works '  but not what another command had left' test -s whole.h5.interrupted
+long run '--checkpoint run.ck'
 
 # --- files that are not a checkpoint of the run -------------------------------
 

@@ -376,8 +376,10 @@ typedef struct simulation_options {
 /** Compute the response, if there is an output, and costs, if asked for. */
 ritz_status simulation_run(cli_run *run, simulation_options *given);
 
-/** Remove the checkpoint of a run whose output is in place. */
-void simulation_remove_checkpoint(const simulation_options *given);
+/** Remove the checkpoint of a run whose output is in place, and
+ * OUTPUT.interrupted if the same command wrote it. */
+void simulation_remove_leftovers(const cli_run *run,
+                                 const simulation_options *given);
 
 /* --- ritz-verify ---------------------------------------------------------- */
 

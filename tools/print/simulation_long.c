@@ -155,8 +155,27 @@ ritz_status simulation_long_run(simulation_task *task,
     return RITZ_OK;
 }
 
-void simulation_remove_checkpoint(const simulation_options *given)
+/* Whether a file is what an interrupted run of this command has left. */
+static bool is_leftover(const cli_run *run, const char *path)
 {
+    RITZ_OWN(ritz_summary) summary = {0};
+
+    return access(path, F_OK) == 0 &&
+           ritz_container_summary(path, &summary) == RITZ_OK &&
+           strcmp(summary.kind, "simulation") == 0 && *summary.interrupted &&
+           strcmp(summary.command, run->command) == 0;
+}
+
+void simulation_remove_leftovers(const cli_run *run,
+                                 const simulation_options *given)
+{
+    char path[CLI_MAX_COMMAND];
+
     if (given->checkpoint)
         unlink(given->checkpoint);
+    if (run->output &&
+        snprintf(path, sizeof path, "%s.interrupted", run->output) <
+            (int)sizeof path &&
+        is_leftover(run, path))
+        unlink(path);
 }
