@@ -44,9 +44,11 @@ typedef struct ritz_outlook {
     bool known; /* whether the loop itself, continuous, is stable */
     ritz_probe loop;
     double
-        radius; /* spectral, of the map from a step, or a sample, to the next;
+        radius;   /* spectral, of the map from a step, or a sample, to the next;
                       of `exact` NaN */
-    bool grows; /* whether it is above 1 by more than its error */
+    bool grows;   /* whether it is above 1 by more than its error */
+    bool neutral; /* it is 1 within its error: the loop neither grows nor
+                       decays */
     bool estimated; /* by the growth of a vector, the map being too large */
     double limit; /* s: the least step found at which the split is unstable, of
                      those tried from `from` on upwards. HUGE_VAL: none up to
@@ -84,6 +86,18 @@ ritz_status ritz_controlled_examine(ritz_model subject,
                                     const ritz_simulation_request *request,
                                     const ritz_controlled *controlled,
                                     ritz_outlook *out);
+
+/**
+ * Processor time of a step of a closed loop, measured at rest, in s: the least
+ * of several measurements, as of ritz_simulate_step_cost.
+ *
+ * @return RITZ_ERR_ARGUMENT as ritz_simulate_controlled; whether the loop is
+ *         stable is not examined
+ */
+ritz_status ritz_controlled_step_cost(ritz_model subject,
+                                      const ritz_simulation_request *request,
+                                      const ritz_controlled *controlled,
+                                      double *out);
 
 /**
  * Refuse a loop that is unstable, unless `force` is set, and a step at which

@@ -83,6 +83,24 @@ static ritz_status run_controlled(ritz_model subject,
     return RITZ_OK;
 }
 
+ritz_status ritz_controlled_step_cost(ritz_model subject,
+                                      const ritz_simulation_request *request,
+                                      const ritz_controlled *controlled,
+                                      double *out)
+{
+    RITZ_OWN(ritz_motion) motion = {0};
+    RITZ_OWN(ritz_march) march = {0};
+    RITZ_OWN_ARRAY double *u = NULL;
+
+    RITZ_CHECK(ritz_controlled_check(subject, request, controlled));
+    RITZ_CHECK(ritz_motion_new(subject, request, &motion));
+    motion.energies = motion.form != RITZ_FORM_STATES;
+    motion.any_step = true;
+    RITZ_CHECK_NEW(u, motion.B.ncol);
+    RITZ_CHECK(start_march(subject, &motion, request, controlled, &march));
+    return ritz_march_cost(&march, u, out);
+}
+
 ritz_status ritz_simulate_controlled(ritz_model subject,
                                      const ritz_simulation_request *request,
                                      const ritz_controlled *controlled,

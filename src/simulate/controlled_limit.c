@@ -46,10 +46,15 @@ static ritz_status radius_of_matrix(ritz_march *march, ritz_outlook *out)
     RITZ_CHECK(map_matrix(march, &A));
     RITZ_CHECK(ritz_eigenvalues_of(&A, &values));
     out->radius = values.radius;
-    out->grows = false;
-    for (int64_t k = 0; k < values.count; k++)
-        out->grows |= hypot(values.re[k], values.im[k]) >
-                      1.0 + RITZ_POLE_BOUND_FACTOR * values.error[k];
+    out->grows = out->neutral = false;
+    for (int64_t k = 0; k < values.count; k++) {
+        const double error = RITZ_POLE_BOUND_FACTOR * values.error[k];
+        const double beyond = hypot(values.re[k], values.im[k]) - 1.0;
+
+        out->grows |= beyond > error;
+        out->neutral |= fabs(beyond) <= error;
+    }
+    out->neutral &= !out->grows;
     return RITZ_OK;
 }
 
@@ -89,6 +94,7 @@ static ritz_status radius_of_growth(ritz_march *march, ritz_outlook *out)
     out->radius = exp(second);
     out->grows = !isfinite(second) || (second > RITZ_GROWTH_LEAST &&
                                        second > RITZ_GROWTH_KEPT * first);
+    out->neutral = !out->grows && second >= -RITZ_GROWTH_LEAST;
     return RITZ_OK;
 }
 

@@ -108,6 +108,19 @@ expect 0 'modal, closed loop, step' run_loop --step 1e-3 --loop exact -o exact.h
 expect 0 'a step of 0.002 s, of which sample and delay' run_loop --step 3e-3 \
     --sample 0.01 --delay 0.004 -o sampled.h5
 expect 0 'controller-work' ritz-info sampled.h5
+# reports STABILITY OPTION...: so says the report of the run
+reports() {
+    says=$1
+    shift
+    json "${status:-0}" run_loop --step 1e-3 "$@" -o said.h5
+    holds "  and is $says" "j['stability'] == '$says'"
+}
+reports marginal # a free body, whose rate is controlled
+reports marginal --loop exact
+reports marginal --sample 0.01 --delay 0.004
+reports unknown --delay 0.004
+reports unstable --force --feedback positive
+status=1 reports unstable --sample 0.01 --feedback positive
 expect 1 'the loop is unstable, pole at' run_loop --step 1e-3 \
     --feedback positive -o none.h5
 expect 1 'makes the loop unstable' run_loop --step 0.5 -o none.h5
@@ -126,6 +139,7 @@ expect 2 'give its --controller' ritz-simulate --seconds 1 --loop exact \
 
 json 0 ritz-simulate --cost --band-hz 0,10 --damping 'modal 0.01' \
     --record runs.jsonl reduced.h5
+holds '  no loop is among them' '"loops" not in j'
 holds '  every integrator has a step, a cost and an error' \
     'len(j["integrators"]) == 4 and j["integrators"][0]["error"] == 0
      and all(i["seconds_per_second"] > 0 and i["error"] < 0.05
@@ -138,6 +152,19 @@ holds '  and the record says so' \
     'j["cost"]["integrator"] == "trapezoidal" and j["order"] > 4
      and j["cost"]["seconds_per_second"] > 0
      and j["method"] == "macneal-rubin"'
+loop='--controller lag.h5 --connect rate=u1 --connect y1=torque'
+# shellcheck disable=SC2086 # $loop is words
+json 0 ritz-simulate --cost --band-hz 0,10 $loop reduced.h5
+holds '  a loop is measured, not run' \
+    '[w["name"] for w in j["loops"]] == ["loop, split", "loop, exact"] and
+     all(w["seconds_per_second"] > 0 for w in j["loops"]) and
+     not j["output"]'
+# shellcheck disable=SC2086 # $loop is words
+json 0 ritz-simulate --cost --step 0.01 --sample 0.05 $loop reduced.h5
+holds '  a sampled one has its own cost, at the step that is given' \
+    '[(w["name"], w["step"]) for w in j["loops"]] == [("loop, sampled", 0.01)]'
+expect 1 '--cost is of a model, alone or in a closed loop: --switched' \
+    ritz-simulate --cost --switched modes --switch-interval 1 reduced.h5
 expect 1 'is of reduced components and systems' ritz-simulate --cost stator.h5
 
 # --- what is asked in vain ---------------------------------------------------

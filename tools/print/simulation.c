@@ -168,21 +168,6 @@ static void simulation_task_free(simulation_task *d)
     ritz_scene_free(&d->scene);
 }
 
-/* The kind of run that the options request; NULL: a run of one linear model. */
-static ritz_status find_kind(const simulation_options *given,
-                             const simulation_kind **out)
-{
-    *out = NULL;
-    for (const simulation_kind *k = simulation_kinds; k->option; k++) {
-        if (!k->asked(given))
-            continue;
-        RITZ_REFUSE_IF(*out, RITZ_ERR_ARGUMENT, "give %s or %s, not both",
-                       (*out)->option, k->option);
-        *out = k;
-    }
-    return RITZ_OK;
-}
-
 static void warn_of_rounding(cli_run *run, double accuracy,
                              const ritz_accuracy *reached,
                              const ritz_simulation *s)
@@ -279,7 +264,7 @@ static ritz_status simulate_response(simulation_task *d)
                        !simulation_spins(d),
                    RITZ_ERR_ARGUMENT,
                    "nothing moves it: give --input NAME=SIGNAL or --initial");
-    RITZ_CHECK(find_kind(given, &kind));
+    RITZ_CHECK(simulation_find_kind(given, &kind));
     RITZ_REFUSE_IF(kind && given->step == 0.0, RITZ_ERR_ARGUMENT,
                    "%s needs --step: no step is chosen by an accuracy",
                    kind->option);

@@ -47,6 +47,11 @@ typedef struct simulation_kind {
 /** All of them, ended by an empty one. */
 extern const simulation_kind simulation_kinds[];
 
+/** The kind of run that the options request; NULL: a run of one linear model.
+ * @return RITZ_ERR_ARGUMENT if they request two */
+ritz_status simulation_find_kind(const simulation_options *given,
+                                 const simulation_kind **out);
+
 /** The bodies of a scene, joined over time as --constraints says. */
 simulation_function simulation_constrained;
 bool simulation_is_constrained(const simulation_options *given);
@@ -98,6 +103,10 @@ ritz_status simulation_sweep_check(const simulation_task *d);
 
 /** Print what each integrator costs at the step that it needs. */
 ritz_status simulation_say_costs(simulation_task *d, const double band_hz[2]);
+
+/** Print what a second of the closed loop costs, split and by one exponential,
+ * or sampled. @p step is used if no step is given. */
+ritz_status simulation_say_loop_costs(simulation_task *d, double step);
 
 /** The cost of a model, in the line of --record. */
 ritz_status simulation_record_cost(cli_run *run, ritz_model subject,

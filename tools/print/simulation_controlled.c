@@ -50,6 +50,27 @@ static void say_split(cli_run *run, bool sampled, const ritz_outlook *seen)
                 seen->from);
 }
 
+/* The verdict where there are no poles of a continuous loop. A sampled loop is
+   stable if its map is; a delayed one is known to be unstable only. */
+static void say_map(cli_run *run, const ritz_controlled *controlled,
+                    const ritz_outlook *seen)
+{
+    const bool sampled = controlled->sample > 0.0;
+    const ritz_stability verdict = seen->grows     ? RITZ_UNSTABLE
+                                   : seen->neutral ? RITZ_MARGINAL
+                                                   : RITZ_STABLE;
+
+    if (sampled) {
+        sink_say(run, "stability", "the sampled loop is %s",
+                 ritz_stability_name(verdict));
+        return;
+    }
+    cli_say(run, "the poles of the loop are not known, because the plant is "
+                 "too large or the controller has a delay");
+    sink_set(run, "stability", "%s",
+             seen->late ? ritz_stability_name(RITZ_UNSTABLE) : "unknown");
+}
+
 static void warn_of_growth(cli_run *run, double step, const ritz_outlook *seen)
 {
     char text[2 * RITZ_NAME_SIZE];
@@ -88,9 +109,8 @@ static ritz_status examine(simulation_task *d,
     RITZ_CHECK(ritz_controlled_examine(d->subject, request, controlled, &seen));
     if (seen.known)
         loop_say_stability(run, &seen.loop);
-    else if (!(controlled->sample > 0.0))
-        cli_say(run, "the poles of the loop are not known, because the plant "
-                     "is too large or the controller has a delay");
+    else
+        say_map(run, controlled, &seen);
     if (!controlled->exact)
         say_split(run, controlled->sample > 0.0, &seen);
     RITZ_CHECK(ritz_controlled_refuse(request, controlled, &seen));
@@ -130,22 +150,76 @@ ritz_status simulation_prepare_loop(simulation_task *task)
     return loop_join(task->run, given, &task->io, &inner, &task->loop);
 }
 
+/* The controller as options say. */
+static ritz_controlled take_controlled(const simulation_task *d)
+{
+    const simulation_options *given = d->given;
+
+    return (ritz_controlled){.controller = &d->controller.states,
+                             .loop = &d->loop,
+                             .exact =
+                                 given->way && strcmp(given->way, "exact") == 0,
+                             .discrete = given->discrete,
+                             .sample = given->sample,
+                             .delay = given->delay,
+                             .any_step = given->any_step,
+                             .force = given->loops.force};
+}
+
+static ritz_status say_loop_cost(const simulation_task *d,
+                                 const ritz_controlled *controlled,
+                                 const ritz_simulation_request *request)
+{
+    const char *way = controlled->exact          ? "exact"
+                      : controlled->sample > 0.0 ? "sampled"
+                                                 : "split";
+    char name[RITZ_NAME_SIZE];
+    double spent = 0.0;
+
+    RITZ_CHECK_IN(way, ritz_controlled_step_cost(d->subject, request,
+                                                 controlled, &spent));
+    (void)snprintf(name, sizeof name, "loop, %s", way);
+    sink_say(d->run, "name,step,seconds_per_second", "%-20s %12.4g %14.3g",
+             name, request->step, spent / request->step);
+    return RITZ_OK;
+}
+
+ritz_status simulation_say_loop_costs(simulation_task *d, double step)
+{
+    const simulation_options *given = d->given;
+    const ritz_simulation_request request = {
+        .integrator = given->integrator,
+        .seconds = 1.0,
+        .step = given->step > 0.0 ? given->step : step,
+        .rho = given->rho};
+    ritz_simulation_request asked = request;
+    ritz_controlled way = {0};
+
+    if (!d->controller.kind)
+        RITZ_CHECK_IN("--controller", simulation_prepare_loop(d));
+    way = take_controlled(d);
+    RITZ_CHECK(ritz_controlled_step(&way, request.step, &asked.step));
+    sink_list(d->run, "loops");
+    if (!way.exact)
+        RITZ_CHECK(say_loop_cost(d, &way, &asked));
+    way.exact =
+        given->integrator == &ritz_integrator_modal && !(way.sample > 0.0) &&
+        !(way.delay > 0.0) &&
+        ritz_model_order(d->subject) * 2 + d->controller.states.A.nrow <=
+            RITZ_LOOP_EXACT;
+    if (way.exact)
+        RITZ_CHECK(say_loop_cost(d, &way, &asked));
+    sink_end(d->run);
+    return RITZ_OK;
+}
+
 ritz_status simulation_controlled(simulation_task *d,
                                   const ritz_simulation_request *request,
                                   ritz_simulation *out)
 {
     static const ritz_outlook examined = {0};
-    const simulation_options *given = d->given;
     ritz_simulation_request asked = *request;
-    const ritz_controlled controlled = {
-        .controller = &d->controller.states,
-        .loop = &d->loop,
-        .exact = given->way && strcmp(given->way, "exact") == 0,
-        .discrete = given->discrete,
-        .sample = given->sample,
-        .delay = given->delay,
-        .any_step = given->any_step,
-        .force = given->loops.force};
+    const ritz_controlled controlled = take_controlled(d);
 
     RITZ_CHECK(ritz_controlled_step(&controlled, request->step, &asked.step));
     if (!d->told)

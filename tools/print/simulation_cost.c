@@ -101,9 +101,15 @@ ritz_status simulation_say_costs(simulation_task *d, const double band_hz[2])
     const model *m = &d->m;
     ritz_cost cost = {0};
     ritz_simulation_request request = RITZ_SIMULATION_NONE;
+    const simulation_kind *kind = NULL;
 
     RITZ_REFUSE_IF(d->subject.kind != RITZ_MODEL_DENSE, RITZ_ERR_ARGUMENT,
                    "--cost is of reduced components and systems");
+    RITZ_CHECK(simulation_find_kind(given, &kind));
+    RITZ_REFUSE_IF(kind && !simulation_is_controlled(given), RITZ_ERR_ARGUMENT,
+                   "--cost is of a model, alone or in a closed loop: %s cannot "
+                   "be used with it",
+                   kind->option);
     RITZ_CHECK(simulation_record_cost(run, d->subject, band_hz, &cost));
     model_set_cost(run, &cost);
     say_cost_head(run, &cost);
@@ -123,6 +129,8 @@ ritz_status simulation_say_costs(simulation_task *d, const double band_hz[2])
         RITZ_CHECK_IN((*i)->name, say_integrator(run, d->subject, request));
     }
     sink_end(run);
+    if (kind)
+        RITZ_CHECK(simulation_say_loop_costs(d, cost.step_accurate));
     RITZ_CHECK(say_refactored(run, &cost));
     cli_record(run, m->kind == MODEL_REDUCED ? m->reduced.origin.method : "",
                ritz_model_order(model_reference(m)));

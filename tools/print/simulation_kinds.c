@@ -19,3 +19,17 @@ const simulation_kind simulation_kinds[] = {
      .simulate = simulation_sweep},
     {0},
 };
+
+ritz_status simulation_find_kind(const simulation_options *given,
+                                 const simulation_kind **out)
+{
+    *out = NULL;
+    for (const simulation_kind *k = simulation_kinds; k->option; k++) {
+        if (!k->asked(given))
+            continue;
+        RITZ_REFUSE_IF(*out, RITZ_ERR_ARGUMENT, "give %s or %s, not both",
+                       (*out)->option, k->option);
+        *out = k;
+    }
+    return RITZ_OK;
+}
