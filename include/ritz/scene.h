@@ -175,6 +175,7 @@ typedef struct ritz_scene_spin {
     double axis[3];    /* unit */
     double through[3]; /* a point of the axis */
     ritz_spin_rate rate;
+    double negligible; /* relative change of a frequency; 1e-3 */
     ritz_spin_model model;
     int64_t line, column;
 } ritz_scene_spin;

@@ -32,6 +32,12 @@
 /* A stiffening that was made for a spin about a point is of an axis that passes
    it by this part of the size of the body: it is then wrong by about as much. */
 #define RITZ_SPIN_AWAY 1e-6
+/* A body without stiffness is rigid if the mass matrix of its rigid motion is
+   its M, to this part of the largest entry: both are sums over all grids. */
+#define RITZ_SPIN_RIGID 1e-8
+/* Largest rate of a spin, rad/s: its square times any mass stays finite, and no
+   structure in any units turns faster. */
+#define RITZ_SPIN_FASTEST 1e15
 /* A scale that would be 0 is this, so that it divides. */
 #define RITZ_LEAST_SCALE 1e-300
 
@@ -1061,10 +1067,11 @@
    configurations. `attached: auto`: relative error of the largest and the
    smallest singular value of the response. `extraneous: compact`: increase of
    the errors of frequencies and of |H|, relative to the frequency and to the
-   largest |H|. */
+   largest |H|. `spin: {negligible}`: relative change of a frequency. */
 #define RITZ_SCENE_SELECT   1e-3
 #define RITZ_SCENE_ATTACHED 1e-3
 #define RITZ_SCENE_COMPACT  1e-3
+#define RITZ_SCENE_SPIN     1e-3
 /* Forces whose normalised columns differ by less than this are the same
    force. */
 #define RITZ_SAME_FORCE 1e-9

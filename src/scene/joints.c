@@ -73,26 +73,6 @@ static const joint_kind kinds[] = {
     [RITZ_JOINT_RIGID] = {"rigid", "rigid joint", OFFSET, .freedoms = 0},
 };
 
-/* axis / |axis|, scaled first so that no square leaves the range. */
-static ritz_status take_axis(const ritz_yaml *yaml, const yaml_node_t *node,
-                             void *field)
-{
-    double *axis = (double *)field;
-    double largest = 0.0;
-    double length = 0.0;
-
-    RITZ_CHECK(ritz_yaml_reals(yaml, node, 3, axis));
-    for (int i = 0; i < 3; i++)
-        largest = fmax(largest, fabs(axis[i]));
-    RITZ_REFUSE_AT(largest == 0.0, yaml, node, "the axis has no length");
-    for (int i = 0; i < 3; i++)
-        axis[i] /= largest;
-    length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
-    for (int i = 0; i < 3; i++)
-        axis[i] /= length;
-    return RITZ_OK;
-}
-
 /* |a x b| of unit vectors: the sine between them. */
 static double sine_between(const double *a, const double *b)
 {
@@ -113,8 +93,8 @@ static ritz_status take_axes(const ritz_yaml *yaml, const yaml_node_t *node,
     RITZ_REFUSE_AT(count != 2, yaml, node,
                    "2 axes are expected here, not %" PRId64, count);
     for (int64_t k = 0; k < 2; k++)
-        RITZ_CHECK(
-            take_axis(yaml, ritz_yaml_item(yaml, node, k), axes + 3 * k));
+        RITZ_CHECK(ritz_yaml_direction(yaml, ritz_yaml_item(yaml, node, k),
+                                       axes + 3 * k));
     RITZ_REFUSE_AT(sine_between(axes, axes + 3) <= RITZ_PARALLEL_AXES, yaml,
                    node, "the two axes are parallel");
     return RITZ_OK;
@@ -140,7 +120,8 @@ static const ritz_yaml_key keys[NUM_KEYS] = {
                   .words = {"joint type", sizeof kinds / sizeof *kinds,
                             kinds[0].name, sizeof *kinds}},
     [KEY_AXIS] = {"axis", false, RITZ_YAML_BY_HAND,
-                  .offset = offsetof(ritz_joint, axis), .take = take_axis},
+                  .offset = offsetof(ritz_joint, axis),
+                  .take = ritz_yaml_direction},
     [KEY_AXES] = {"axes", false, RITZ_YAML_BY_HAND,
                   .offset = offsetof(ritz_joint, axis), .take = take_axes},
     [KEY_ANGLES] = {.name = "angles_deg"},

@@ -539,7 +539,8 @@ ritz_status ritz_scene_parse(const char *path, const char *text,
              .select_tolerance = RITZ_SCENE_SELECT,
              .composite_tolerance = RITZ_NEGLIGIBLE,
              .attached_tolerance = RITZ_SCENE_ATTACHED,
-             .extraneous_tolerance = RITZ_SCENE_COMPACT};
+             .extraneous_tolerance = RITZ_SCENE_COMPACT,
+             .spin = {.negligible = RITZ_SCENE_SPIN}};
 
     RITZ_CHECK_NEW(scene.path, (int64_t)strlen(path) + 1);
     memcpy(scene.path, path, strlen(path));

@@ -4,7 +4,6 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "base/vector.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -38,15 +37,18 @@ ritz_status ritz_scene_stiffening(const ritz_yaml *yaml,
     return RITZ_OK;
 }
 
-enum { AXIS, THROUGH, RATE, RPM, HZ, PROFILE, RAMP, NUM_KEYS };
+enum { AXIS, THROUGH, NEGLIGIBLE, RATE, RPM, HZ, PROFILE, RAMP, NUM_KEYS };
 enum { TO, SECONDS, NUM_RAMP_KEYS };
 enum { MOST_POINTS = 100000 };
 
 static const ritz_yaml_key keys[NUM_KEYS] = {
-    [AXIS] = {"axis", true, RITZ_YAML_REALS,
-              .offset = offsetof(ritz_scene_spin, axis), .count = 3},
+    [AXIS] = {"axis", true, RITZ_YAML_BY_HAND,
+              .offset = offsetof(ritz_scene_spin, axis),
+              .take = ritz_yaml_direction},
     [THROUGH] = {"through", false, RITZ_YAML_REALS,
                  .offset = offsetof(ritz_scene_spin, through), .count = 3},
+    [NEGLIGIBLE] = {"negligible", false, RITZ_YAML_FRACTION,
+                    RITZ_YAML_FIELD(ritz_scene_spin, negligible)},
     [RATE] = {.name = "rate"},
     [RPM] = {.name = "rpm"},
     [HZ] = {.name = "hz"},
@@ -58,6 +60,25 @@ static const ritz_yaml_key ramp_keys[NUM_RAMP_KEYS] = {
     [TO] = {.name = "to", .required = true},
     [SECONDS] = {.name = "seconds", .required = true},
 };
+
+static ritz_status check_rate(const ritz_yaml *yaml, const yaml_node_t *node,
+                              double rate)
+{
+    RITZ_REFUSE_AT(fabs(rate) > RITZ_SPIN_FASTEST, yaml, node,
+                   "a rate of %g rad/s is beyond %g rad/s", rate,
+                   RITZ_SPIN_FASTEST);
+    return RITZ_OK;
+}
+
+/* The change of a rate within some time. */
+static ritz_status check_slope(const ritz_yaml *yaml, const yaml_node_t *node,
+                               double change, double seconds)
+{
+    RITZ_REFUSE_AT(!(fabs(change / seconds) <= RITZ_SPIN_FASTEST), yaml, node,
+                   "a change of %g rad/s within %g s is beyond %g rad/s^2",
+                   change, seconds, RITZ_SPIN_FASTEST);
+    return RITZ_OK;
+}
 
 static ritz_status make_room(int64_t count, ritz_spin_rate *rate)
 {
@@ -85,6 +106,10 @@ static ritz_status take_profile(const ritz_yaml *yaml, const yaml_node_t *node,
         RITZ_CHECK(ritz_yaml_reals(yaml, item, 2, point));
         RITZ_REFUSE_AT(k > 0 && point[0] <= rate->time[k - 1], yaml, item,
                        "times of a profile ascend, %g does not", point[0]);
+        RITZ_CHECK(check_rate(yaml, item, point[1]));
+        if (k > 0)
+            RITZ_CHECK(check_slope(yaml, item, point[1] - rate->value[k - 1],
+                                   point[0] - rate->time[k - 1]));
         rate->time[k] = point[0];
         rate->value[k] = point[1];
     }
@@ -105,6 +130,9 @@ static ritz_status take_ramp(const ritz_yaml *yaml, const yaml_node_t *node,
     RITZ_CHECK(ritz_yaml_real(yaml, value[SECONDS], rate->time));
     RITZ_REFUSE_AT(!(rate->time[0] > 0.0), yaml, value[SECONDS],
                    "a ramp takes some time, not %g s", rate->time[0]);
+    RITZ_CHECK(check_rate(yaml, value[TO], rate->value[0]));
+    RITZ_CHECK(
+        check_slope(yaml, value[SECONDS], rate->value[0], rate->time[0]));
     rate->course = RITZ_SPIN_RAMP;
     return RITZ_OK;
 }
@@ -130,6 +158,7 @@ static ritz_status take_rate(const ritz_yaml *yaml, const yaml_node_t *node,
         if (value[k]) {
             RITZ_CHECK(ritz_yaml_real(yaml, value[k], rate->value));
             rate->value[0] *= unit[k];
+            RITZ_CHECK(check_rate(yaml, value[k], rate->value[0]));
         }
     return RITZ_OK;
 }
@@ -153,17 +182,11 @@ ritz_status ritz_scene_spin_part(const ritz_yaml *yaml, const yaml_node_t *node,
 {
     const yaml_node_t *value[NUM_KEYS] = {0};
     ritz_scene_spin *spin = &scene->spin;
-    double length = 0.0;
 
     if (!node)
         return RITZ_OK;
     ritz_yaml_locate(node, &spin->line, &spin->column);
     RITZ_CHECK(ritz_yaml_mapping(yaml, node, NUM_KEYS, keys, spin, value));
-    length = sqrt(ritz_dot(spin->axis, spin->axis));
-    RITZ_REFUSE_AT(!(length > 0.0 && isfinite(length)), yaml, value[AXIS],
-                   "the axis has no direction");
-    for (int k = 0; k < 3; k++)
-        spin->axis[k] /= length;
     RITZ_CHECK(take_rate(yaml, node, value, &spin->rate));
     spin->given = true;
     return check_plane(yaml, value[AXIS], scene);

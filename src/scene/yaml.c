@@ -2,6 +2,7 @@
 #include "base/alloc.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -369,6 +370,26 @@ ritz_status ritz_yaml_reals(const ritz_yaml *yaml, const yaml_node_t *node,
     for (int64_t k = 0; k < count; k++)
         RITZ_CHECK(
             ritz_yaml_real(yaml, ritz_yaml_item(yaml, node, k), &out[k]));
+    return RITZ_OK;
+}
+
+/* Scaled first so that no square leaves the range. */
+ritz_status ritz_yaml_direction(const ritz_yaml *yaml, const yaml_node_t *node,
+                                void *field)
+{
+    double *axis = (double *)field;
+    double largest = 0.0;
+    double length = 0.0;
+
+    RITZ_CHECK(ritz_yaml_reals(yaml, node, 3, axis));
+    for (int i = 0; i < 3; i++)
+        largest = fmax(largest, fabs(axis[i]));
+    RITZ_REFUSE_AT(largest == 0.0, yaml, node, "the axis has no length");
+    for (int i = 0; i < 3; i++)
+        axis[i] /= largest;
+    length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+    for (int i = 0; i < 3; i++)
+        axis[i] /= length;
     return RITZ_OK;
 }
 

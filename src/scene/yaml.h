@@ -139,6 +139,9 @@ ritz_status ritz_yaml_whole(const ritz_yaml *yaml, const yaml_node_t *node,
 ritz_status ritz_yaml_reals(const ritz_yaml *yaml, const yaml_node_t *node,
                             int64_t count, double *out);
 
+/** An axis of three numbers, as a unit vector of doubles. */
+ritz_yaml_take ritz_yaml_direction;
+
 /** Index of a word among names. */
 ritz_status ritz_yaml_word(const ritz_yaml *yaml, const yaml_node_t *node,
                            const ritz_names *names, int64_t *out);

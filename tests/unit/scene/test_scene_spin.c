@@ -51,6 +51,21 @@ static void a_course_is_read(void **)
     assert_near(ritz_spin_rate_at(&ramp.spin.rate, 20.0), 6.0, 0.0);
 }
 
+/* An axis of any length has a direction, and a negligible change a default. */
+static void axes_and_errors_are_read(void **)
+{
+    RITZ_OWN(ritz_scene)
+    usual = scene_of_text(BLADE "spin: {axis: [0, 0, 1e200], rate: 1}\n");
+    RITZ_OWN(ritz_scene)
+    given = scene_of_text(BLADE "spin: {axis: [0, 3e-200, 4e-200], rate: 1, "
+                                "negligible: 0.02}\n");
+
+    assert_near(usual.spin.axis[2], 1.0, 0.0);
+    assert_near(usual.spin.negligible, 1e-3, 0.0);
+    assert_near(given.spin.axis[1], 0.6, 1e-15);
+    assert_near(given.spin.negligible, 0.02, 0.0);
+}
+
 static void stiffening_is_read(void **)
 {
     RITZ_OWN(ritz_scene)
@@ -70,7 +85,29 @@ static void bad_spins_are_refused(void **)
     static const refusal cases[] = {
         {BLADE "spin: {rate: 3}\n", "s:4:7: key 'axis' is missing"},
         {BLADE "spin: {axis: [0, 0, 0], rate: 3}\n",
-         "s:4:14: the axis has no direction"},
+         "s:4:14: the axis has no length"},
+        {BLADE "spin: {axis: [0, 0, 1], rate: 1e200}\n",
+         "s:4:31: a rate of 1e+200 rad/s is beyond 1e+15 rad/s"},
+        {BLADE "spin: {axis: [0, 0, 1], rpm: -1e17}\n",
+         "s:4:30: a rate of -1.0472e+16 rad/s is beyond 1e+15 rad/s"},
+        {BLADE "spin: {axis: [0, 0, 1], rate: .nan}\n",
+         "s:4:31: '.nan' is not a finite number"},
+        {BLADE "spin: {axis: [0, 0, 1], rate: inf}\n",
+         "s:4:31: 'inf' is not a finite number"},
+        {BLADE "spin: {axis: [0, 0, 1], rate: fast}\n",
+         "s:4:31: 'fast' is not a finite number"},
+        {BLADE "spin: {axis: [0, 0, 1], profile: [[0, 0], [1, 1e16]]}\n",
+         "s:4:43: a rate of 1e+16 rad/s is beyond 1e+15 rad/s"},
+        {BLADE "spin: {axis: [0, 0, 1], profile: [[0, 0], [1e-20, 1]]}\n",
+         "s:4:43: a change of 1 rad/s within 1e-20 s is beyond 1e+15 rad/s^2"},
+        {BLADE "spin: {axis: [0, 0, 1], ramp: {to: 1e16, seconds: 1}}\n",
+         "s:4:36: a rate of 1e+16 rad/s is beyond 1e+15 rad/s"},
+        {BLADE "spin: {axis: [0, 0, 1], ramp: {to: 1, seconds: -2}}\n",
+         "s:4:48: a ramp takes some time, not -2 s"},
+        {BLADE "spin: {axis: [0, 0, 1], ramp: {to: 1, seconds: 1e-20}}\n",
+         "s:4:48: a change of 1 rad/s within 1e-20 s is beyond 1e+15 rad/s^2"},
+        {BLADE "spin: {axis: [0, 0, 1], rate: 1, negligible: 0}\n",
+         "s:4:46: 0 is not between 0 and 1"},
         {BLADE "spin: {axis: [0, 0, 1]}\n",
          "s:4:7: a spin has one of rate, rpm, hz, profile and ramp"},
         {BLADE "spin: {axis: [0, 0, 1], rate: 1, hz: 2}\n",
@@ -116,6 +153,7 @@ static void every_allocation_may_fail(void **)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_rate_may_be_in_any_unit),
     cmocka_unit_test(a_course_is_read),
+    cmocka_unit_test(axes_and_errors_are_read),
     cmocka_unit_test(stiffening_is_read),
     cmocka_unit_test(bad_spins_are_refused),
     cmocka_unit_test(every_allocation_may_fail),
