@@ -133,8 +133,9 @@ ritz_status ritz_stage_spin(const ritz_stage *stage,
 
 /** The first stiffening that body @p k of a scene that spins needs and does not
  * name; RITZ_NUM_STIFFENINGS if it names all. */
-int ritz_stage_spin_lacks(const ritz_stage *stage, const ritz_configuration *at,
-                          int64_t k);
+ritz_status ritz_stage_spin_lacks(const ritz_stage *stage,
+                                  const ritz_configuration *at, int64_t k,
+                                  int *out);
 
 /**
  * Rates that limit the model of a scene that spins. `stable` is the rate at
@@ -143,11 +144,25 @@ int ritz_stage_spin_lacks(const ritz_stage *stage, const ritz_configuration *at,
  * frequency up to the end of the band (of all modes if there is no band) by
  * more than @p error.
  *
+ * A flexible body that bodies outboard pull at needs the stiffening `tip`. If
+ * it names none, the stiffness of that pull is estimated, and included in
+ * `negligible` although the model does not have it.
+ *
+ * @param[out] unpulled  a rate for each body, up to which leaving out that
+ *                       estimate changes no frequency by more than @p error;
+ *                       HUGE_VAL: there is no such pull, or `tip` has it;
+ *                       NULL: not wanted
  * @return RITZ_ERR_ARGUMENT as ritz_stage_spin
  */
 ritz_status ritz_stage_spin_limits(const ritz_stage *stage,
                                    const double *setting, double error,
-                                   ritz_spin_limits *out);
+                                   ritz_spin_limits *out, double *unpulled);
+
+/** Mass of all bodies that joints hold outboard of body @p k of a scene that
+ * spins. */
+ritz_status ritz_stage_spin_outboard(const ritz_stage *stage,
+                                     const ritz_configuration *at, int64_t k,
+                                     double *out);
 
 /* Which dof of which body a dof of the full-order system is. */
 typedef struct ritz_master {

@@ -4,7 +4,7 @@
  * and goes through R'(c - t). At a rate W the matrices of the body become
  *
  *     K + W^2 (S + KG),   D + W G,
- *     KG = sum_{a <= b} n_a n_b KG_ab + tau KG_tip
+ *     KG = sum_{a <= b} n_a n_b KG_ab + tau KG_tip + KG_turn
  *
  * where KG_ab is the geometric stiffness for the product w_a w_b of rates about
  * its basic axes, and tau is the tension that bodies outboard of it cause at
@@ -16,8 +16,11 @@
  * this one. m_j is the mass of such a body, d_j the vector from the axis to its
  * centre of mass, and e the direction from the axis to the port that holds
  * them. Components of their force perpendicular to e are left out.
+ *
+ * KG_turn is that of the rotation of the body as a whole: see spin_turn.c. A
+ * rigid body has it, and a flexible one for which the scene names no load.
  */
-#include "assembly/assembly.h"
+#include "assembly/spin.h"
 
 #include "base/alloc.h"
 #include "base/text.h"
@@ -40,14 +43,6 @@ ritz_status ritz_spin_refuse(const ritz_scene *scene)
     return RITZ_OK;
 }
 
-/* Row k of placements: R row by row, and t. */
-static void take_place(const ritz_dense *places, int64_t k, double R[9],
-                       double t[3])
-{
-    for (int64_t j = 0; j < 12; j++)
-        *(j < 9 ? &R[j] : &t[j - 9]) = ritz_dense_col(places, j)[k];
-}
-
 /* The axis in the frame of body k: its direction, and its point nearest to the
    basic origin. */
 static void find_axis(const ritz_scene_spin *spin, const ritz_dense *places,
@@ -55,7 +50,7 @@ static void find_axis(const ritz_scene_spin *spin, const ritz_dense *places,
 {
     double R[9], t[3], along = 0.0;
 
-    take_place(places, k, R, t);
+    ritz_spin_take_place(places, k, R, t);
     for (int a = 0; a < 3; a++)
         t[a] = spin->through[a] - t[a];
     ritz_turn_back(R, spin->axis, n);
@@ -65,116 +60,33 @@ static void find_axis(const ritz_scene_spin *spin, const ritz_dense *places,
         foot[a] -= along * n[a];
 }
 
-/* Vector from the axis to a point of body k, in the frame of the scene. */
-static void find_arm(const ritz_scene_spin *spin, const ritz_dense *places,
-                     int64_t k, const double *point, double arm[3])
+static ritz_status check_pull(const ritz_stage *stage,
+                              const ritz_spin_outlet *outlet)
 {
-    double R[9], t[3], along = 0.0;
-
-    take_place(places, k, R, t);
-    ritz_turn_apply(R, point, arm);
-    for (int a = 0; a < 3; a++)
-        arm[a] += t[a] - spin->through[a];
-    along = ritz_dot(spin->axis, arm);
-    for (int a = 0; a < 3; a++)
-        arm[a] -= along * spin->axis[a];
-}
-
-/* Bodies that joints connect to @p start without passing through body k. */
-static void reach_bodies(const ritz_scene *scene, int64_t start, int64_t k,
-                         bool *reached)
-{
-    bool more = true;
-
-    reached[start] = true;
-    while (more) {
-        more = false;
-        for (int64_t j = 0; j < scene->num_joints; j++) {
-            const int64_t a = scene->joint[j].between[0].component;
-            const int64_t b = scene->joint[j].between[1].component;
-
-            if (a == k || b == k || reached[a] == reached[b])
-                continue;
-            reached[a] = reached[b] = more = true;
-        }
-    }
-}
-
-/* The only joint between body k and a body that is not `inboard`, and the side
-   of the joint on which body k is. */
-static ritz_status find_outlet(const ritz_scene *scene, int64_t k,
-                               const bool *inboard, const ritz_joint **joint,
-                               int *side)
-{
-    int count = 0;
-
-    for (int64_t j = 0; j < scene->num_joints; j++)
-        for (int s = 0; s < 2; s++) {
-            const ritz_scene_place *end = scene->joint[j].between;
-
-            if (end[s].component != k || inboard[end[1 - s].component])
-                continue;
-            *joint = &scene->joint[j];
-            *side = s;
-            count++;
-        }
-    RITZ_REFUSE_IF(count != 1, RITZ_ERR_ARGUMENT,
-                   "'tip' is of one joint that leads outboard, and there are "
-                   "%d",
-                   count);
-    return RITZ_OK;
-}
-
-/* Sum of m_j d_j of the bodies outboard of the joint. */
-static ritz_status pull_of(const ritz_stage *stage, const ritz_dense *places,
-                           int64_t start, int64_t k, double pull[3])
-{
-    RITZ_OWN_ARRAY bool *reached = NULL;
-
-    RITZ_CHECK_NEW(reached, stage->count);
-    reach_bodies(stage->scene, start, k, reached);
-    for (int64_t j = 0; j < stage->count; j++) {
-        const ritz_inertia *of = &stage->body[j].inertia;
-        double arm[3];
-
-        if (!reached[j])
-            continue;
-        RITZ_REFUSE_IF(!of->known, RITZ_ERR_ARGUMENT,
-                       "the mass of '%s', which pulls its tip, is not known",
-                       stage->scene->component[j].name);
-        find_arm(&stage->scene->spin, places, j, of->centre, arm);
-        for (int a = 0; a < 3; a++)
-            pull[a] += of->mass * arm[a];
-    }
+    RITZ_REFUSE_IF(outlet->unknown >= 0, RITZ_ERR_ARGUMENT,
+                   "the mass of '%s', which pulls its tip, is not known",
+                   stage->scene->component[outlet->unknown].name);
     return RITZ_OK;
 }
 
 static ritz_status find_tension(const ritz_stage *stage,
                                 const ritz_dense *places, int64_t k,
-                                double *out)
+                                const ritz_spin_joints *joints, double *out)
 {
-    const ritz_scene *scene = stage->scene;
-    RITZ_OWN_ARRAY bool *inboard = NULL;
-    const ritz_joint *joint = NULL;
-    const ritz_port_map *port = NULL;
-    double pull[3] = {0.0}, arm[3], length = 0.0;
-    int side = 0;
+    const ritz_spin_outlet *outlet = joints->outlet;
+    double arm[3], length = 0.0;
 
-    RITZ_CHECK_NEW(inboard, stage->count);
-    if (k > 0)
-        reach_bodies(scene, 0, k, inboard);
-    RITZ_CHECK(find_outlet(scene, k, inboard, &joint, &side));
-    RITZ_CHECK(
-        pull_of(stage, places, joint->between[1 - side].component, k, pull));
-    port = ritz_reduced_port(&stage->body[k], joint->between[side].port);
-    if (!port) /* assembly refuses such a joint */
-        return RITZ_ERR_ARGUMENT;
-    find_arm(&scene->spin, places, k, port->origin, arm);
+    RITZ_REFUSE_IF(joints->count != 1, RITZ_ERR_ARGUMENT,
+                   "'tip' is of one joint that leads outboard, and there are "
+                   "%" PRId64,
+                   joints->count);
+    RITZ_CHECK(check_pull(stage, outlet));
+    ritz_spin_arm(&stage->scene->spin, places, k, outlet->port->origin, arm);
     length = sqrt(ritz_dot(arm, arm));
     RITZ_REFUSE_IF(!(length > 0.0), RITZ_ERR_ARGUMENT,
                    "'tip' needs a port away from the axis, and '%s' is on it",
-                   joint->between[side].port);
-    *out = ritz_dot(arm, pull) / length;
+                   outlet->port->name);
+    *out = ritz_dot(arm, outlet->pull) / length;
     return RITZ_OK;
 }
 
@@ -229,6 +141,7 @@ static ritz_status add_load(const ritz_reduced *body, const char *name,
 
 static ritz_status stiffen_body(const ritz_stage *stage,
                                 const ritz_dense *places, int64_t k,
+                                const ritz_spin_joints *joints,
                                 const double n[3], const double foot[3],
                                 ritz_dense *KG)
 {
@@ -241,7 +154,7 @@ static ritz_status stiffen_body(const ritz_stage *stage,
         if (!*item->stiffening[s])
             continue;
         if (s == RITZ_STIFFENING_TIP)
-            RITZ_CHECK(find_tension(stage, places, k, &weight));
+            RITZ_CHECK(find_tension(stage, places, k, joints, &weight));
         else
             weight = weight_of(s, n);
         spins = spins || s != RITZ_STIFFENING_TIP;
@@ -250,6 +163,111 @@ static ritz_status stiffen_body(const ritz_stage *stage,
             add_load(&stage->body[k], item->stiffening[s], weight, KG));
     }
     return spins ? check_origin(&stage->body[k], foot) : RITZ_OK;
+}
+
+/* The motion of a body as a whole: of a rigid one its own, of a flexible one
+   that of the port by which it is held; {0}: there is none. */
+static ritz_status find_motion(const ritz_reduced *body,
+                               const ritz_port_map *inlet, const double from[3],
+                               ritz_dense *motion)
+{
+    bool rigid = false;
+
+    RITZ_CHECK(ritz_spin_rigid_motion(body, from, &rigid, motion));
+    if (rigid)
+        return RITZ_OK;
+    ritz_dense_free(motion);
+    return inlet && ritz_dense_max(&body->K) > 0.0
+               ? ritz_spin_port_motion(body, inlet, from, motion)
+               : RITZ_OK;
+}
+
+/* B += sum f a' of bodies outboard, a being measured from a point. */
+static ritz_status add_pulls(const ritz_stage *stage, const ritz_dense *places,
+                             int64_t k, const ritz_spin_joints *joints,
+                             const double from[3], double B[9])
+{
+    double R[9], t[3], pull[3];
+
+    ritz_spin_take_place(places, k, R, t);
+    for (int64_t j = 0; j < joints->count; j++) {
+        const ritz_spin_outlet *outlet = &joints->outlet[j];
+
+        RITZ_CHECK(check_pull(stage, outlet));
+        ritz_turn_back(R, outlet->pull, pull);
+        for (int i = 0; i < 9; i++)
+            B[i] += pull[i / 3] * (outlet->port->origin[i % 3] - from[i % 3]);
+    }
+    return RITZ_OK;
+}
+
+/* B of an arm between the port that holds body k and the body's own: all that
+   it carries pulls at its end. */
+static ritz_status find_arm_pull(const ritz_stage *stage,
+                                 const ritz_dense *places, int64_t k,
+                                 const ritz_spin_joints *joints, double B[9])
+{
+    const ritz_inertia *of = &stage->body[k].inertia;
+    double R[9], t[3], arm[3], pull[3], a[3];
+
+    ritz_spin_arm(&stage->scene->spin, places, k, of->centre, pull);
+    for (int i = 0; i < 3; i++) {
+        pull[i] *= of->mass;
+        a[i] = joints->inlet->origin[i] - joints->from[i];
+    }
+    for (int64_t j = 0; j < joints->count; j++) {
+        RITZ_CHECK(check_pull(stage, &joints->outlet[j]));
+        for (int i = 0; i < 3; i++)
+            pull[i] += joints->outlet[j].pull[i];
+    }
+    ritz_spin_take_place(places, k, R, t);
+    ritz_turn_back(R, pull, arm);
+    for (int i = 0; i < 9; i++)
+        B[i] = arm[i / 3] * a[i % 3];
+    return RITZ_OK;
+}
+
+/* Add the stiffness of the rotation of body k as a whole about the port that
+   holds it. Loads that the scene names include that of the body, but not that
+   of an arm to it. */
+static ritz_status stiffen_turn(const ritz_stage *stage,
+                                const ritz_dense *places, int64_t k,
+                                const ritz_spin_joints *joints,
+                                const double n[3], const double foot[3],
+                                ritz_dense *KG)
+{
+    const ritz_reduced *body = &stage->body[k];
+    const double *from = joints->from;
+    RITZ_OWN(ritz_dense) motion = {0};
+    double B[9] = {0.0};
+
+    if (!body->inertia.known)
+        return RITZ_OK;
+    if (ritz_spin_names_load(&stage->scene->component[k])) {
+        if (!joints->inlet)
+            return RITZ_OK;
+        RITZ_CHECK(ritz_spin_port_motion(body, joints->inlet, from, &motion));
+        RITZ_CHECK(find_arm_pull(stage, places, k, joints, B));
+        return ritz_spin_add_turn(B, &motion, KG);
+    }
+    RITZ_CHECK(find_motion(body, joints->inlet, from, &motion));
+    if (!motion.val)
+        return RITZ_OK;
+    ritz_spin_add_mass(&body->inertia, n, foot, from, B);
+    RITZ_CHECK(add_pulls(stage, places, k, joints, from, B));
+    return ritz_spin_add_turn(B, &motion, KG);
+}
+
+static ritz_status find_stiffening(const ritz_stage *stage,
+                                   const ritz_dense *places, int64_t k,
+                                   const double n[3], const double foot[3],
+                                   ritz_dense *KG)
+{
+    RITZ_OWN(ritz_spin_joints) joints = {0};
+
+    RITZ_CHECK(ritz_spin_joints_of(stage, places, k, &joints));
+    RITZ_CHECK(stiffen_body(stage, places, k, &joints, n, foot, KG));
+    return stiffen_turn(stage, places, k, &joints, n, foot, KG);
 }
 
 static ritz_status find_body_terms(const ritz_stage *stage,
@@ -265,7 +283,7 @@ static ritz_status find_body_terms(const ritz_stage *stage,
     find_axis(&scene->spin, places, k, n, foot);
     status = ritz_spin_terms_of(&stage->body[k].invariants, n, foot, &terms);
     if (status == RITZ_OK)
-        status = stiffen_body(stage, places, k, n, foot, &terms.KG);
+        status = find_stiffening(stage, places, k, n, foot, &terms.KG);
     RITZ_CHECK(ritz_scene_context(scene, status, item->line, item->column,
                                   "component", item->name));
     ritz_spin_terms_keep(scene->spin.model, &terms);
@@ -309,15 +327,18 @@ static int find_lack(const ritz_scene_component *item, const double n[3])
     return RITZ_NUM_STIFFENINGS;
 }
 
-int ritz_stage_spin_lacks(const ritz_stage *stage, const ritz_configuration *at,
-                          int64_t k)
+ritz_status ritz_stage_spin_lacks(const ritz_stage *stage,
+                                  const ritz_configuration *at, int64_t k,
+                                  int *out)
 {
     double n[3], foot[3];
+    bool flexible = false;
 
-    if (ritz_dense_max(&stage->body[k].K) == 0.0)
-        return RITZ_NUM_STIFFENINGS;
+    RITZ_CHECK(ritz_spin_is_flexible(&stage->body[k], &flexible));
     find_axis(&stage->scene->spin, &at->places, k, n, foot);
-    return find_lack(&stage->scene->component[k], n);
+    *out = flexible ? find_lack(&stage->scene->component[k], n)
+                    : RITZ_NUM_STIFFENINGS;
+    return RITZ_OK;
 }
 
 /* ---- a stage at a constant rate ----------------------------------------- */

@@ -2,8 +2,9 @@
  * Rates that limit the model of a scene that spins, from the system at rest and
  * its spin terms: see ritz_spin_limits_of.
  */
-#include "assembly/assembly.h"
+#include "assembly/spin.h"
 
+#include "base/alloc.h"
 #include "base/tolerances.h"
 
 #include <math.h>
@@ -27,9 +28,37 @@ static ritz_status band_modes(const ritz_scene *scene,
     return RITZ_OK;
 }
 
+/* Add to KG of a system what the pull of outboard bodies lacks; of each body,
+   the rate up to which that alone may be left out. */
+static ritz_status add_missing_pulls(const ritz_stage *stage,
+                                     const ritz_configuration *c,
+                                     const ritz_dense *modes, double error,
+                                     ritz_spin_terms *sum, double *unpulled)
+{
+    for (int64_t k = 0; k < stage->count; k++) {
+        RITZ_OWN(ritz_dense) KG = {0};
+        RITZ_OWN(ritz_spin_terms) pull = {0};
+        ritz_spin_limits limits = {HUGE_VAL, HUGE_VAL};
+
+        RITZ_CHECK(ritz_spin_add_missing_pull(stage, &c->places, k, &KG));
+        if (KG.val) {
+            RITZ_CHECK(ritz_dense_congruence(&KG, &c->P[k], &pull.KG));
+            RITZ_CHECK(ritz_dense_new(c->K.nrow, 2, &pull.load));
+            RITZ_CHECK(
+                ritz_spin_limits_of(&pull, &c->K, modes, error, &limits));
+            if (!sum->KG.val)
+                RITZ_CHECK(ritz_dense_new(c->K.nrow, c->K.nrow, &sum->KG));
+            ritz_dense_add(1.0, &pull.KG, &sum->KG);
+        }
+        if (unpulled)
+            unpulled[k] = limits.negligible;
+    }
+    return RITZ_OK;
+}
+
 ritz_status ritz_stage_spin_limits(const ritz_stage *stage,
                                    const double *setting, double error,
-                                   ritz_spin_limits *out)
+                                   ritz_spin_limits *out, double *unpulled)
 {
     ritz_scene rest = *stage->scene, all = *stage->scene; /* borrowed */
     ritz_stage at_rest = *stage, consistent = *stage;
@@ -46,6 +75,7 @@ ritz_status ritz_stage_spin_limits(const ritz_stage *stage,
     RITZ_CHECK(ritz_stage_spin(stage, &c, &kept));
     RITZ_CHECK(ritz_stage_spin(&consistent, &c, &terms));
     RITZ_CHECK(band_modes(&rest, &c, &modes));
+    RITZ_CHECK(add_missing_pulls(stage, &c, &modes, error, &terms, unpulled));
     limits.stable = nan("");
     if (c.num_rigid == 0)
         RITZ_CHECK(ritz_spin_limits_of(&kept, &c.K, NULL, error, &limits));

@@ -69,7 +69,83 @@ sed '/stiffening/d' constant.yaml >lacking.yaml
 expect 0 "component 'beam' has no 'stiffening: {spin_zz: LOAD}'" \
     ritz-assemble lacking.yaml -o lacking.h5
 
+# The error at which stiffening is negligible.
+sed 's/rate: 6/rate: 6, negligible: 0.01/' constant.yaml >error.yaml
+json 0 ritz-assemble error.yaml -o x.h5
+holds '  another error of frequencies is that of the rate' \
+    'j["stiffening_negligible_error"] == 0.01 and
+     near([j["stiffening_negligible_rate"]], [0.4861252396], 1e-8)'
+
+# A mass of 4 kg at the tip, and the same at the end of an arm of 1 m. KG of a
+# unit tension has the elements 1/(30 h) [36, 3h, -36, 3h; ...].
+printf '%s\n' 'BEGIN BULK' 'GRID,1,,0.,0.,0.' 'ENDDATA' >mass.bdf
+printf '%s\n' '%%MatrixMarket matrix coordinate real symmetric' '6 6 3' \
+    '1 1 4.' '2 2 4.' '6 6 .01' >mass.mtx
+ritz-import -q --mass mass.mtx --bulk mass.bdf --port p=1 -o mass.h5
+awk 'BEGIN {
+    h = 10 / 12; a = 3 * h; b = 4 * h * h; split("2 3 5 6", row, " ")
+    split(sprintf("36 0 0 0 %.17g %.17g 0 0 -36 %.17g 36 0 %.17g %.17g %.17g " \
+        "%.17g", a, b, -a, a, -b / 4, -a, b), k, " ") # rows, lower triangle
+    for (e = 0; e < 12; e++) for (i = 1; i <= 4; i++) for (j = 1; j <= i; j++)
+        A[3*e + row[i], 3*e + row[j]] += k[4*(i - 1) + j] / (30 * h)
+    for (at in A) count++
+    print "%%MatrixMarket matrix coordinate real symmetric"
+    print 39, 39, count
+    for (at in A) { split(at, ij, SUBSEP); printf "%d %d %.17g\n", ij[1], ij[2],
+        A[at] } }' >pull.mtx
+ritz-import -q --stiffness "$folder/K.mtx" --mass "$folder/M.mtx" \
+    --geometric-stiffness "$folder/KG.mtx@spin" \
+    --geometric-stiffness pull.mtx@pull --bulk "$folder/beam.bdf" \
+    --port tip=13 -o pulled.h5
+tipped() { # RATE STIFFENING OFFSET
+    cat <<SCENE
+scene: beam with a mass
+plane: xy
+components:
+  beam: {model: pulled.h5, basis: full, stiffening: {$2}}
+  mass: {model: mass.h5, basis: rigid}
+joints:
+  - {name: j, between: [beam/tip, mass/p], type: rigid, offset: [$3, 0, 0]}
+spin: {axis: [0, 0, 1], rate: $1}
+SCENE
+}
+tipped 3 'spin_zz: spin, tip: pull' 0 >at-tip.yaml
+tipped 3 'spin_zz: spin, tip: pull' 1 >beyond.yaml
+tipped 3 'spin_zz: spin' 0 >untipped.yaml
+tipped 0.01 'spin_zz: spin' 0 >slow.yaml
+json 0 ritz-assemble at-tip.yaml -o x.h5
+holds '  a mass at the tip: two frequencies of an independent program' \
+    'near(j["frequencies_hz"][:2], [0.441799073, 3.294482829], 1e-8)
+     and not j["warnings"]'
+holds '  and the rate up to which stiffening may be left out' \
+    'near([j["stiffening_negligible_rate"]], [0.10052804738], 1e-9)'
+json 0 ritz-assemble beyond.yaml -o x.h5
+holds '  a mass beyond the tip stiffens by its offset' \
+    'near(j["frequencies_hz"][:2], [0.4126409038, 2.822638730], 1e-6)'
+json 0 ritz-assemble untipped.yaml -o x.h5
+holds '  the pull of a mass is missed by name' \
+    'any("{tip: LOAD}" in w and "beam" in w and "mass of 4 outboard" in w
+         for w in j["warnings"])'
+json 0 ritz-assemble slow.yaml -o x.h5
+holds '  but not where it changes nothing' 'not j["warnings"]'
+expect 0 'may be left out up to about 0.1006' ritz-assemble slow.yaml -o x.h5
+
+# A step that no change of the rate resolves.
+sed 's/to: 6, seconds: 15/to: 1, seconds: 0.1/' spin-up.yaml >quick.yaml
+expect 0 'the step of 0.2 s is longer than the 0.1 s within which the rate' \
+    ritz-simulate quick.yaml --method trapezoidal --step 0.2 --seconds 1 -o x.h5
+json 0 ritz-simulate quick.yaml --method trapezoidal --step 0.1 --seconds 1 \
+    -o x.h5
+holds '  a step as long as the ramp has no warning' 'not j["warnings"]'
+sed 's/ramp: .*/profile: [[0, 0], [0.5, 0], [0.6, 1], [9, 1]]}/' spin-up.yaml \
+    >jump.yaml
+expect 0 'the step of 0.2 s is longer than the 0.1 s within which the rate' \
+    ritz-simulate jump.yaml --method trapezoidal --step 0.2 --seconds 1 -o x.h5
+
 # Refusals.
+sed 's/rate: 6/rate: 1e200/' constant.yaml >x.yaml
+expect 1 'a rate of 1e+200 rad/s is beyond 1e+15 rad/s' \
+    ritz-assemble x.yaml -o x.h5
 expect 1 'a rate of spin that changes is for ritz-simulate' \
     ritz-assemble spin-up.yaml -o x.h5
 expect 1 'a rate of spin that changes needs --step' \

@@ -23,7 +23,7 @@ typedef struct simulation_task {
     double *x0, *v0;     /* of the subject; NULL: at rest */
     model controller;    /* of --controller */
     ritz_loop loop;      /* how it is joined to the subject */
-    bool told; /* stability of the loop was printed: a run with checkpoints has
+    bool told; /* what a run says first was printed: one with checkpoints has
                   several parts, and it is printed once */
     ritz_accuracy reached; /* of a run whose step --accuracy chose */
     int64_t num_libraries; /* of --switched */

@@ -1,13 +1,11 @@
 /* What ritz-assemble and ritz-simulate print about a scene that spins. */
 #include "print/print.h"
 
+#include "base/alloc.h"
 #include "base/tolerances.h"
 #include "model/inertia_terms.h"
 
 #include <math.h>
-
-/* A relative change of frequency up to this is negligible. */
-static const double negligible = 1e-3;
 
 /* Warn of the terms that a spin model leaves out [PadillaVonFlotow1992]. */
 static void warn_of_model(cli_run *run, ritz_spin_model kept)
@@ -25,20 +23,25 @@ static void warn_of_model(cli_run *run, ritz_spin_model kept)
 
 /* Warn of bodies without KG: a consistent model needs one for each product of
    rates. */
-static void warn_of_lacks(cli_run *run, const ritz_stage *stage,
-                          const ritz_configuration *at)
+static ritz_status warn_of_lacks(cli_run *run, const ritz_stage *stage,
+                                 const ritz_configuration *at, bool *any)
 {
     for (int64_t k = 0; k < stage->count; k++) {
-        const int lack = ritz_stage_spin_lacks(stage, at, k);
+        int lack = 0;
 
-        if (lack < RITZ_NUM_STIFFENINGS)
+        RITZ_CHECK(ritz_stage_spin_lacks(stage, at, k, &lack));
+        if (lack == RITZ_NUM_STIFFENINGS)
+            continue;
+        *any = true;
+        if (stage->scene->spin.model == RITZ_SPIN_CONSISTENT)
             cli_warn(run,
-                     "component '%s' has no 'stiffening: {%s: LOAD}': its "
-                     "geometric stiffness is left out, as an inconsistent "
-                     "model does",
+                     "component '%s' has no 'stiffening: {%s: LOAD}': the "
+                     "geometric stiffness of its deformation is left out, as "
+                     "an inconsistent model does",
                      stage->scene->component[k].name,
                      ritz_stiffening_word[lack]);
     }
+    return RITZ_OK;
 }
 
 /* Warn of inertia invariants that are approximate. */
@@ -70,19 +73,60 @@ static double highest_rate(const ritz_spin_rate *rate)
     return most;
 }
 
+/* Warn of flexible bodies that name no load for the pull of bodies outboard, if
+   it changes a frequency by more than is negligible; tell whether any has such
+   a pull. */
+static ritz_status warn_of_pulls(cli_run *run, const ritz_stage *stage,
+                                 const ritz_configuration *at,
+                                 const double *unpulled, bool *any)
+{
+    const ritz_scene_spin *spin = &stage->scene->spin;
+
+    for (int64_t k = 0; k < stage->count; k++) {
+        double mass = 0.0;
+
+        *any = *any || isfinite(unpulled[k]);
+        if (!(highest_rate(&spin->rate) > unpulled[k]) ||
+            spin->model != RITZ_SPIN_CONSISTENT)
+            continue;
+        RITZ_CHECK(ritz_stage_spin_outboard(stage, at, k, &mass));
+        cli_warn(run,
+                 "component '%s' has no 'stiffening: {tip: LOAD}': the pull of "
+                 "the mass of %.6g outboard does not stiffen it, although it "
+                 "changes a frequency by more than %g from about %.3g rad/s on",
+                 stage->scene->component[k].name, mass, spin->negligible,
+                 unpulled[k]);
+    }
+    return RITZ_OK;
+}
+
+/* The rate up to which stiffening may be left out, and what it rests on. */
+static void say_negligible(cli_run *run, double rate, double error,
+                           bool estimated, bool lacks)
+{
+    if (!isfinite(rate))
+        return;
+    sink_field(run, "stiffening",
+               ",,stiffening_negligible_rate,stiffening_negligible_error",
+               "%s up to %s%.6g rad/s: frequencies change by at most %g",
+               lacks ? "that is named may be left out" : "may be left out",
+               estimated ? "about " : "", rate, error);
+}
+
 static ritz_status say_limits(cli_run *run, const ritz_stage *stage,
-                              const double *setting)
+                              const ritz_configuration *at, bool lacks)
 {
     const ritz_scene_spin *spin = &stage->scene->spin;
     const double most = highest_rate(&spin->rate);
+    RITZ_OWN_ARRAY double *unpulled = NULL;
     ritz_spin_limits limits = {0};
+    bool estimated = false;
 
-    RITZ_CHECK(ritz_stage_spin_limits(stage, setting, negligible, &limits));
-    if (isfinite(limits.negligible))
-        sink_field(run, "stiffening", "stiffening_negligible_rate",
-                   "may be left out up to %.6g rad/s: frequencies change by at "
-                   "most 0.001",
-                   limits.negligible);
+    RITZ_CHECK_NEW(unpulled, stage->count);
+    RITZ_CHECK(ritz_stage_spin_limits(stage, at->setting, spin->negligible,
+                                      &limits, unpulled));
+    RITZ_CHECK(warn_of_pulls(run, stage, at, unpulled, &estimated));
+    say_negligible(run, limits.negligible, spin->negligible, estimated, lacks);
     if (isfinite(limits.stable))
         sink_field(run, "stiffness", "stable_rate",
                    "positive definite up to %.6g rad/s", limits.stable);
@@ -103,6 +147,7 @@ ritz_status spin_say(cli_run *run, const ritz_stage *stage,
 {
     const ritz_scene_spin *spin = &stage->scene->spin;
     const double most = highest_rate(&spin->rate);
+    bool lacks = false;
 
     if (!spin->given)
         return RITZ_OK;
@@ -112,8 +157,7 @@ ritz_status spin_say(cli_run *run, const ritz_stage *stage,
         cli_say(run, "  %-14s up to %.6g rad/s, %s", "spin", most,
                 ritz_spin_model_name(spin->model));
     warn_of_model(run, spin->model);
-    if (spin->model == RITZ_SPIN_CONSISTENT)
-        warn_of_lacks(run, stage, at);
+    RITZ_CHECK(warn_of_lacks(run, stage, at, &lacks));
     RITZ_CHECK(warn_of_loss(run, stage));
-    return say_limits(run, stage, at->setting);
+    return say_limits(run, stage, at, lacks);
 }
