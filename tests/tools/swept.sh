@@ -20,6 +20,14 @@ expect 0 'JOINT=FROM:TO:TIME' ritz-simulate --help
          and j["interpolation"] <= 1e-7 and j["against"] == "full"
          and j["response_error"] < 0.05 and j["energy_error"] < 0.05
          and j["diagnostics"][0]["name"] == "angle"'
+    holds '  at a rate below the lowest mode, without a warning of it' \
+        'j["rate_ratio"] < 1
+         and not any("lowest frequency" in w for w in j["warnings"])'
+    json 0 ritz-simulate --sweep clock=0:60:0.5s:smooth --sweep-modes 14 \
+        $run -o fast.h5
+    holds 'a joint that turns faster than the lowest mode has a warning' \
+        'j["rate_ratio"] > 1 and any("times the lowest frequency" in w
+                                     for w in j["warnings"])'
     json 0 ritz-simulate --sweep clock=0:60:4s:smooth --sweep-modes 14 \
         --sweep-basis without-terms --sweep-against full $run -o wrong.h5
     holds '  and without the terms they are not' \
