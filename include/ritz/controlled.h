@@ -125,7 +125,8 @@ ritz_status ritz_controlled_refuse(const ritz_simulation_request *request,
  *         `exact`
  * @cost   a step of split costs that of the integrator and O((n + m) p + m^2),
  *         for m states of the controller and p of its signals; a step of exact
- *         O((n + m)^2)
+ *         O((n + m) k) if the loop adds a rank k to the matrices of a step,
+ *         at most O((n + m)^2)
  */
 ritz_status ritz_simulate_controlled(ritz_model subject,
                                      const ritz_simulation_request *request,

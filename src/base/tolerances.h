@@ -843,6 +843,10 @@
 #define RITZ_STEP_LEAST       1e-3
 /* A loop that still grows at a step this many times finer does so by its delay. */
 #define RITZ_STEP_FINER 8.0
+/* What a loop adds to the matrices of an exact step is rounding below so many
+   times (4 + |A| h) of their norm: the exponential itself errs by eps |A| h. */
+#define RITZ_STEP_MATRIX_ROUNDING 0x1p-52
+#define RITZ_STEP_MATRIX_LEAST    4.0
 /* A map of more numbers than 160 is applied to a vector so often, four times;
    from the first half to the second growth by powers of the count halves its
    rate, exponential growth does not. A rate below 1e-6 a step is not told from

@@ -561,6 +561,20 @@ static ritz_status balance_matrix(ritz_dense *A, double *d)
     return RITZ_OK;
 }
 
+ritz_status ritz_general_balance(const ritz_dense *A, double *d, double *norm)
+{
+    int n = (int)A->nrow;
+    RITZ_OWN(ritz_dense) balanced = {0};
+
+    *norm = 0.0;
+    if (n == 0)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_dense_copy(A, &balanced));
+    RITZ_CHECK(balance_matrix(&balanced, d));
+    *norm = LAPACKE_dlange(LAPACK_COL_MAJOR, '1', n, n, balanced.val, n);
+    return RITZ_OK;
+}
+
 /* A(i,j) *= d(i)^row d(j)^col, powers being 1 or -1. */
 static void turn_matrix(const double *d, int row, int col, ritz_dense *A)
 {

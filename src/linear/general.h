@@ -242,6 +242,16 @@ void ritz_eigenvalues_free(ritz_eigenvalues *eigenvalues);
 ritz_status ritz_exponential(const ritz_dense *A, double h, int count,
                              const ritz_dense *Q, ritz_dense *E, ritz_dense *W);
 
+/**
+ * Scales d, powers of two, with which D^-1 A D has rows and columns of similar
+ * size: those by which ritz_exponential balances.
+ *
+ * @param[out] d  as many as A has rows
+ * @param[out] norm  of D^-1 A D, the largest sum of a column
+ * @return RITZ_ERR_ARGUMENT if A is not finite
+ */
+ritz_status ritz_general_balance(const ritz_dense *A, double *d, double *norm);
+
 /* X'Y = U diag(s) V' */
 typedef struct ritz_product_svd {
     int64_t count; /* min of n, l and k */

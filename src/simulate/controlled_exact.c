@@ -7,6 +7,9 @@
  * s is the largest entry of B. The energy that damping dissipates over a step,
  * the work of all forces and that of the controller are quadratic forms of
  * [z_0; s r_0; s (r_1 - r_0)], which are integrated with the exponential.
+ *
+ * All are kept as step_matrix.h has them, and cost O(N k) a step as long as the loop
+ * couples the modes by k terms.
  */
 #include "simulate/controlled.h"
 
@@ -14,6 +17,7 @@
 #include "base/tolerances.h"
 #include "linear/general.h"
 #include "response/loop.h"
+#include "simulate/step_matrix.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -29,11 +33,11 @@ RITZ_ARRAY_OF(ritz_dense);
 typedef struct exact {
     int64_t n, states; /* rows of z; of w, its last part */
     double scale;
-    ritz_dense E;        /* z_1 over [z; s r; s dr] */
-    ritz_dense W[FORMS]; /* {0}: energies are not requested */
-    ritz_dense C, D;     /* of the closed loop */
-    ritz_dense v;        /* outputs of the controller over [z; r] */
-    double *memory;      /* w, work */
+    ritz_step_matrix E; /* z_1 over [z; s r; s dr] */
+    ritz_step_matrix W[FORMS];
+    ritz_dense C, D; /* of the closed loop */
+    ritz_dense v;    /* outputs of the controller over [z; r] */
+    double *memory;  /* w, work */
     double *z, *z1;
     ritz_loop_notes notes;
 } exact;
@@ -41,12 +45,12 @@ typedef struct exact {
 static void release_exact(void *own)
 {
     exact *s = own;
-    enum { MATRICES = 7 };
-    ritz_dense *const matrices[MATRICES] = {&s->E, &s->W[0], &s->W[1], &s->W[2],
-                                            &s->C, &s->D,    &s->v};
-
-    for (int k = 0; k < MATRICES; k++)
-        ritz_dense_free(matrices[k]);
+    ritz_step_matrix_free(&s->E);
+    for (int f = 0; f < FORMS; f++)
+        ritz_step_matrix_free(&s->W[f]);
+    ritz_dense_free(&s->C);
+    ritz_dense_free(&s->D);
+    ritz_dense_free(&s->v);
     ritz_loop_notes_free(&s->notes);
     RITZ_FREE(s->memory, s->z, s->z1, s);
 }
@@ -88,12 +92,11 @@ static ritz_status advance_exact(ritz_march *march, const double *u0,
         s->z[s->n + p + j] = s->scale * (u1[j] - u0[j]);
     }
     if (s->notes.work) {
-        march->dissipated += ritz_motion_form(&s->W[0], s->z);
-        march->work += ritz_motion_form(&s->W[1], s->z);
-        s->memory[s->states] += ritz_motion_form(&s->W[2], s->z);
+        march->dissipated += ritz_step_matrix_value(&s->W[0], s->z);
+        march->work += ritz_step_matrix_value(&s->W[1], s->z);
+        s->memory[s->states] += ritz_step_matrix_value(&s->W[2], s->z);
     }
-    memset(s->z1, 0, (size_t)s->n * sizeof *s->z1);
-    ritz_motion_gemv(&s->E, 1.0, s->z, s->z1);
+    ritz_step_matrix_apply(&s->E, s->z, s->z1);
     scatter(march, s);
     return RITZ_OK;
 }
@@ -184,15 +187,22 @@ static ritz_status fill_exact(const ritz_motion *motion,
                               exact *s)
 {
     const int count = motion->energies ? FORMS : 0;
-    RITZ_OWN(ritz_dense) A = {0}, X = {0};
+    const bool modal = motion->form == RITZ_FORM_MODAL;
+    RITZ_OWN(ritz_dense) A = {0};
     RITZ_OWN(ritz_dense_array) Q = {.count = FORMS};
+    RITZ_OWN_ARRAY double *d = NULL;
+    ritz_step_matrix_modes modes = {modal ? motion->n : 0, motion->lambda, NULL,
+                                    s->n};
 
     RITZ_CHECK_NEW(Q.at, FORMS);
+    RITZ_CHECK_NEW(d, motion->n);
+    for (int64_t j = 0; modal && j < motion->n; j++)
+        d[j] = ritz_dense_col(&motion->D, j)[j];
+    modes.d = d;
     RITZ_CHECK(exact_matrix(closed, step, s, &A));
     if (count > 0)
         RITZ_CHECK(exact_forms(motion, plant, &A, s->scale, Q.at));
-    RITZ_CHECK(ritz_exponential(&A, step, count, Q.at, &X, s->W));
-    RITZ_CHECK(ritz_dense_block(&X, 0, s->n, 0, A.ncol, &s->E));
+    RITZ_CHECK(ritz_step_matrices(&modes, &A, step, count, Q.at, &s->E, s->W));
     RITZ_CHECK(ritz_dense_copy(&closed->C, &s->C));
     RITZ_CHECK(ritz_dense_copy(&closed->D, &s->D));
     RITZ_CHECK_NEW(s->memory, s->states + 1);

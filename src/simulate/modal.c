@@ -9,121 +9,20 @@
  * s the largest entry of B, lest large units cost doublings.
  *
  * What damping takes in a step and what inputs give are z'W z with W of
- * exponential.c, exact as well.
+ * ritz_exponential, exact as well. Matrices of coupled modes are those of
+ * step_matrix.h: a few dampers between modes cost O(N k) a step.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "linear/general.h"
 #include "simulate/motion.h"
+#include "simulate/step_matrix.h"
 
 #include <ritz/matrix.h>
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
-
-/*
- * All are divided differences of exp(s h) over the roots s_1, s_2 of
- * s^2 + d s + lambda and over 0: S of [s_1, s_2], P of [0, s_1, s_2] and R of
- * [0, 0, s_1, s_2]. So
- *
- * - while the roots are small, |s| h <= 1, by their power series: with h_k the
- *   complete symmetric polynomials, h_k = -d h_(k-1) - lambda h_(k-2),
- *
- *       S = sum h_k h^(k+1) / (k+1)!
- *
- *   and P, R one and two powers further; there is no root in it, and nothing
- *   divides;
- * - of real roots by the recursion that divides by the larger of them,
- *   P = (E - S) / -s_big, E = (exp(s_small h) - 1) / s_small, as the small one
- *   may vanish, and with expm1, as they may meet;
- * - of complex roots by sine and cosine, P and R from the equation itself,
- *   S' - 1 + d S + lambda P = 0 and S - h + d P + lambda R = 0, which loses
- *   nothing as lambda h^2 >= 1 there.
- */
-
-/* 1/22! is below the rounding of 1. */
-enum { TERMS = 22 };
-
-static ritz_oscillator by_series(double lambda, double d, double h)
-{
-    ritz_oscillator o = {0};
-    double before = 0.0; /* h_(k-1), each times h^k */
-    double term = 1.0;
-    double factorial = 1.0; /* k! */
-
-    for (int k = 0; k < TERMS; k++) {
-        double next = -d * h * term - lambda * h * h * before;
-
-        o.rate += term / factorial;
-        o.S += h * term / (factorial * (k + 1));
-        o.P += h * h * term / (factorial * (k + 1) * (k + 2));
-        o.R += h * h * h * term / (factorial * (k + 1) * (k + 2) * (k + 3));
-        factorial *= k + 1;
-        before = term;
-        term = next;
-    }
-    o.hold = 1.0 - lambda * o.P;
-    return o;
-}
-
-/* (exp(s h) - 1 - s h) / s^2 */
-static double second_difference(double s, double h)
-{
-    double z = s * h;
-    double sum = 0.0;
-
-    if (fabs(z) > 1.0)
-        return (expm1(z) - z) / (s * s);
-    for (int k = TERMS; k >= 2; k--)
-        sum = sum * z / (k + 1) + 1.0;
-    return 0.5 * h * h * sum;
-}
-
-static ritz_oscillator by_real_roots(double lambda, double d, double h)
-{
-    ritz_oscillator o = {0};
-    double half = 0.5 * d;
-    double root = sqrt(fmax(half * half - lambda, 0.0));
-    double big = half >= 0.0 ? -(half + root) : root - half;
-    double small = lambda / big;
-    double gap = 2.0 * root;
-    double top = big > small ? big : small;
-    double first = small != 0.0 ? expm1(small * h) / small : h;
-
-    o.S = exp(top * h) * (gap * h > 0.0 ? -expm1(-gap * h) / gap : h);
-    o.rate = exp(big * h) + small * o.S;
-    o.hold = exp(big * h) - big * o.S;
-    o.P = (o.S - first) / big;
-    o.R = (o.P - second_difference(small, h)) / big;
-    return o;
-}
-
-static ritz_oscillator by_complex_roots(double lambda, double d, double h)
-{
-    ritz_oscillator o = {0};
-    double w = sqrt(lambda);
-    double half = 0.5 * d;
-    double r = sqrt((w - half) * (w + half));
-    double fade = exp(-half * h);
-
-    o.S = fade * (r > 0.0 ? sin(r * h) / r : h);
-    o.rate = fade * cos(r * h) - half * o.S;
-    o.hold = fade * cos(r * h) + half * o.S;
-    o.P = (1.0 - o.hold) / lambda;
-    o.R = (h - o.S - d * o.P) / lambda;
-    return o;
-}
-
-ritz_oscillator ritz_oscillator_over(double lambda, double d, double h)
-{
-    if (fabs(d) * h <= 1.0 && fabs(lambda) * h * h <= 1.0)
-        return by_series(lambda, d, h);
-    if (lambda <= 0.25 * d * d)
-        return by_real_roots(lambda, d, h);
-    return by_complex_roots(lambda, d, h);
-}
 
 /* Modes that D couples; one alone if `o` is to be used. */
 typedef struct coupled_modes {
@@ -131,8 +30,9 @@ typedef struct coupled_modes {
     const int64_t *mode;
     ritz_oscillator o;
     double scale;
-    ritz_dense E;    /* N x N, N = 2 g + 2 p, or {0} */
-    ritz_dense W[2]; /* N x N, of damping and of inputs; or {0} */
+    ritz_step_matrix E;    /* 2 g x N, N = 2 g + 2 p; one alone: {0} */
+    ritz_step_matrix W[2]; /* N x N, of damping and of inputs; or {0} */
+    double alone[2][4][4]; /* the same forms of one mode */
 } coupled_modes;
 
 typedef struct modal {
@@ -148,9 +48,9 @@ static void release_modal(void *own)
     modal *s = own;
 
     for (int64_t k = 0; s->group && k < s->num_groups; k++) {
-        ritz_dense_free(&s->group[k].E);
-        ritz_dense_free(&s->group[k].W[0]);
-        ritz_dense_free(&s->group[k].W[1]);
+        ritz_step_matrix_free(&s->group[k].E);
+        ritz_step_matrix_free(&s->group[k].W[0]);
+        ritz_step_matrix_free(&s->group[k].W[1]);
     }
     free(s->group);
     ritz_groups_free(&s->parts);
@@ -208,31 +108,57 @@ static ritz_status group_forms(const ritz_motion *m, const coupled_modes *part,
     return RITZ_OK;
 }
 
+/* The forms of a mode alone. */
+static ritz_status prepare_alone(const ritz_motion *m, double h,
+                                 coupled_modes *part)
+{
+    RITZ_OWN(ritz_dense) A = {0}, E = {0};
+    RITZ_OWN(ritz_dense_pair) Q = {0}, W = {0};
+
+    RITZ_CHECK(group_matrix(m, part, &A));
+    RITZ_CHECK(group_forms(m, part, &A, Q));
+    RITZ_CHECK(ritz_exponential(&A, h, 2, Q, &E, W));
+    for (int f = 0; f < 2; f++)
+        memcpy(part->alone[f], W[f].val, sizeof part->alone[f]);
+    return RITZ_OK;
+}
+
 static ritz_status prepare_group(const ritz_motion *m, double h,
                                  coupled_modes *part)
 {
     RITZ_OWN(ritz_dense) A = {0};
     RITZ_OWN(ritz_dense_pair) Q = {0};
-    int64_t j = part->mode[0];
+    RITZ_OWN_ARRAY double *lambda = NULL, *d = NULL;
+    const int64_t g = part->count, j = part->mode[0];
 
     part->scale = fmax(ritz_dense_max(&m->B), RITZ_LEAST_SCALE);
-    if (part->count == 1) {
+    if (g == 1) {
         part->o =
             ritz_oscillator_over(m->lambda[j], ritz_dense_col(&m->D, j)[j], h);
-        if (!m->energies)
-            return RITZ_OK;
+        return m->energies ? prepare_alone(m, h, part) : RITZ_OK;
+    }
+    RITZ_CHECK_NEW(lambda, g);
+    RITZ_CHECK_NEW(d, g);
+    for (int64_t i = 0; i < g; i++) {
+        lambda[i] = m->lambda[part->mode[i]];
+        d[i] = ritz_dense_col(&m->D, part->mode[i])[part->mode[i]];
     }
     RITZ_CHECK(group_matrix(m, part, &A));
     if (m->energies)
         RITZ_CHECK(group_forms(m, part, &A, Q));
-    return ritz_exponential(&A, h, m->energies ? 2 : 0, Q, &part->E, part->W);
+    return ritz_step_matrices(&(ritz_step_matrix_modes){g, lambda, d, 2 * g},
+                              &A, h, m->energies ? 2 : 0, Q, &part->E, part->W);
 }
 
-static void account_energy(const coupled_modes *part, const double *z,
-                           ritz_march *march)
+/* z'W z of a mode alone. */
+static double value_alone(const double W[4][4], const double z[4])
 {
-    march->dissipated += ritz_motion_form(&part->W[0], z);
-    march->work += ritz_motion_form(&part->W[1], z);
+    double sum = 0.0;
+
+    for (int j = 0; j < 4; j++)
+        sum += z[j] * (W[j][0] * z[0] + W[j][1] * z[1] + W[j][2] * z[2] +
+                       W[j][3] * z[3]);
+    return sum;
 }
 
 /* A mode alone. */
@@ -245,8 +171,10 @@ static void advance_one(const coupled_modes *part, double f, double g,
     double v = march->v[j];
     const double z[4] = {q, v, f, g};
 
-    if (march->motion->energies)
-        account_energy(part, z, march);
+    if (march->motion->energies) {
+        march->dissipated += value_alone(part->alone[0], z);
+        march->work += value_alone(part->alone[1], z);
+    }
     march->x[j] = o->hold * q + o->S * v + o->P * f + o->R * g;
     march->v[j] = -march->motion->lambda[j] * o->S * q + o->rate * v +
                   o->S * f + o->P * g;
@@ -267,10 +195,11 @@ static void advance_group(const coupled_modes *part, const double *u0,
         s->z[2 * g + j] = part->scale * u0[j];
         s->z[2 * g + p + j] = part->scale * (u1[j] - u0[j]) / march->step;
     }
-    if (m->energies)
-        account_energy(part, s->z, march);
-    memset(s->z1, 0, (size_t)(2 * g + 2 * p) * sizeof *s->z1);
-    ritz_motion_gemv(&part->E, 1.0, s->z, s->z1);
+    if (m->energies) {
+        march->dissipated += ritz_step_matrix_value(&part->W[0], s->z);
+        march->work += ritz_step_matrix_value(&part->W[1], s->z);
+    }
+    ritz_step_matrix_apply(&part->E, s->z, s->z1);
     for (int64_t i = 0; i < g; i++) {
         march->x[part->mode[i]] = s->z1[i];
         march->v[part->mode[i]] = s->z1[g + i];
