@@ -119,7 +119,18 @@ expect 1 '--constraints needs --step' ritz-simulate $run --constraints none \
 expect 1 "no stabilisation is called 'glue'" ritz-simulate $run --step 1e-3 \
     --constraints glue -o x.h5
 expect 1 'is no scene' ritz-simulate rotor.h5 --step 1e-3 --seconds 1 \
-    --initial mode:7 --up-to-hz 10 --constraints none -o x.h5
+    --initial mode:7 --constraints none -o x.h5
+expect 1 'index-2 is generalised-alpha: --method trapezoidal is not for it' \
+    ritz-simulate $run --step 1e-3 --method trapezoidal --constraints index-2 \
+    -o x.h5
+expect 1 '--method modal is not for bodies that forces join' ritz-simulate \
+    $run --step 1e-3 --method modal --constraints projection -o x.h5
+expect 1 '--rho is for --method generalised-alpha and index-2, not for trap' \
+    ritz-simulate $run --step 1e-3 --rho 0.5 --constraints projection -o x.h5
+expect 0 'index-2 generalised-alpha' ritz-simulate $run --step 1e-3 --rho 0.5 \
+    --method generalised-alpha --constraints index-2 -o rho.h5
+expect 2 '--start-digits rounds initial values' ritz-simulate $run --step 1e-3 \
+    --start-digits 3 --constraints none -o x.h5
 expect 0 '--constraints, of scenes' ritz-simulate --list
 works '  nothing is written where a run is refused' test ! -e x.h5
 printf '1..%d\n' "$count"

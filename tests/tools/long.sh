@@ -64,7 +64,7 @@ long run '--checkpoint run.ck'
 # --- files that are not a checkpoint of the run -------------------------------
 
 expect 1 "the same command continues it" at_step INT simulation $run
-long run "--checkpoint run.ck --rho 0.5"
+long run "--checkpoint run.ck --every 2"
 expect 1 "'run.ck' is a checkpoint of 'ritz-simulate reduced.h5" $run
 ritz-reduce -q stator.h5 basis.h5 --band-hz 0,5 -o reduced.h5
 long run '--checkpoint run.ck'

@@ -132,8 +132,6 @@ printf '0 1 0\n10 1 0\n' >lag.tsv
 expect 1 'lag.tsv: a measured response has no states for a run in time' \
     ritz-simulate --seconds 1 --step 1e-3 --input torque=step \
     --controller lag.tsv reduced.h5 -o none.h5
-expect 2 'give its --controller' ritz-simulate --seconds 1 --loop exact \
-    reduced.h5 -o none.h5
 
 # --- what it costs -----------------------------------------------------------
 
@@ -163,9 +161,61 @@ holds '  a loop is measured, not run' \
 json 0 ritz-simulate --cost --step 0.01 --sample 0.05 $loop reduced.h5
 holds '  a sampled one has its own cost, at the step that is given' \
     '[(w["name"], w["step"]) for w in j["loops"]] == [("loop, sampled", 0.01)]'
-expect 1 '--cost is of a model, alone or in a closed loop: --switched' \
+expect 2 '--switched is for a run that -o writes, not for --cost' \
     ritz-simulate --cost --switched modes --switch-interval 1 reduced.h5
 expect 1 'is of reduced components and systems' ritz-simulate --cost stator.h5
+
+# --- options of another kind of run ------------------------------------------
+
+# other OPTION BELONGS KIND WORDS: OPTION is for BELONGS, and not for KIND, which
+# is requested by WORDS.
+other() {
+    name=${1%% *} belongs=$2 kind=$3
+    set -- $1 $4
+    expect 2 "$name is for $belongs, not for $kind" ritz-simulate --seconds 1 \
+        --step 0.01 --input torque=step "$@" reduced.h5 -o none.h5
+}
+linear='a run of one linear model'
+loop='--controller loop.h5'
+for option in '--connect a=b' '--feedback negative' '--loop split' \
+    '--sample 1' '--delay 0' --discrete --force; do
+    other "$option" --controller "$linear" ''
+done
+other --any-step '--constraints or --controller' "$linear" ''
+other --any-step '--constraints or --controller' --sweep '--sweep a=0:1:1'
+other '--start-digits 4' --constraints "$linear" '--initial mode:1'
+other '--start-digits 4' --constraints --switched '--switched modes'
+other '--sweep-modes 4' --sweep "$linear" ''
+other '--sweep-basis switched' --sweep --constraints '--constraints none'
+other '--sweep-against full' --sweep --controller "$loop"
+other '--indicator 0.5' --switched --controller "$loop"
+other '--up-to-hz 5' "$linear, --controller or --sweep" --constraints \
+    '--constraints none'
+other '--coordinates' "$linear or --controller" --sweep '--sweep a=0:1:1'
+other '--rho 0.5' "$linear, --constraints or --controller" --switched \
+    '--switched modes'
+other '--damper a=1' "$linear, --switched, --controller, a rate of spin that \
+changes or --cost" --constraints '--constraints none'
+other '--rho 0.8' '--method generalised-alpha' modal ''
+other '--rho 0.8' '--method generalised-alpha' trapezoidal \
+    '--method trapezoidal'
+expect 2 '--accuracy is for a run of one linear model, not for --constraints' \
+    ritz-simulate --seconds 1 --accuracy 0.01 --constraints none \
+    --input torque=step reduced.h5 -o none.h5
+expect 2 '--up-to-hz is for --method modal, not for trapezoidal' ritz-simulate \
+    --seconds 1 --step 0.01 --method trapezoidal --up-to-hz 5 \
+    --input torque=step stator.h5 -o none.h5
+expect 1 '--up-to-hz is for components, whose modes are computed' \
+    ritz-simulate --seconds 1 --step 0.01 --up-to-hz 5 --input torque=step \
+    reduced.h5 -o none.h5
+expect 2 '--every is for --step' ritz-simulate --seconds 1 --every 2 \
+    --input torque=step reduced.h5 -o none.h5
+expect 2 '--band-hz is for --cost and --record' ritz-simulate --seconds 1 \
+    --band-hz 0,1 --input torque=step reduced.h5 -o none.h5
+expect 2 '--step is for a run that -o writes, not for --cost' ritz-simulate \
+    --cost --step 0.01 reduced.h5
+expect 2 '--constraints is for a run that -o writes, not for --cost' \
+    ritz-simulate --cost --constraints none reduced.h5
 
 # --- what is asked in vain ---------------------------------------------------
 

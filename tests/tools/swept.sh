@@ -81,10 +81,15 @@ expect 0 'JOINT=FROM:TO:TIME' ritz-simulate --help
         --sweep clock=0:60:4s --seconds 5 --sweep-modes 14 $run -o no.h5
     expect 1 'not by generalised-alpha' ritz-simulate --sweep clock=0:60:4s \
         --method generalised-alpha --sweep-modes 14 $run -o no.h5
-    expect 2 '--sweep-... needs --sweep' ritz-simulate --seconds 1 \
-        --sweep-modes 14 $run -o no.h5
-    expect 2 '--damper has no effect' ritz-simulate --sweep clock=0:60:4s \
+    expect 2 'not for --sweep' ritz-simulate --sweep clock=0:60:4s \
         --damper a=1 $run -o no.h5
+    expect 1 'not by modal' ritz-simulate --sweep clock=0:60:4s \
+        --method modal --sweep-modes 14 $run -o no.h5
+    expect 2 'give --sweep-modes or --up-to-hz, not both' ritz-simulate \
+        --sweep clock=0:60:4s --up-to-hz 5 --sweep-modes 14 $run -o no.h5
+    expect 2 '--up-to-hz has no effect on a basis of all modes' \
+        ritz-simulate --sweep clock=0:60:4s --sweep-basis full \
+        --up-to-hz 5 $run -o no.h5
     expect 2 '--sweep is given twice: one joint moves' ritz-simulate \
         --sweep clock=0:60:4s --sweep cone=0:10:4s $run -o no.h5
     expect 2 '--sweep-modes has no effect on a basis of all modes' \

@@ -12,7 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { MAX_OPTIONS = 80, EXIT_USAGE = 2, WORD = 32 };
+enum { EXIT_USAGE = 2, WORD = 32 };
 
 /* The tool's own options, then those that every tool has; ended by {0}. The
    first of these belongs to tools that compute with large models. */
@@ -47,7 +47,7 @@ static void gather_options(cli_run *run, cli_option *all)
 
     while (run->options[count].kind != CLI_KIND_END)
         count++;
-    if (count + last - first > MAX_OPTIONS)
+    if (count + last - first > CLI_MAX_OPTIONS)
         abort();
     memcpy(all, run->options, (size_t)count * sizeof *all);
     memcpy(all + count, common + first, (size_t)(last - first) * sizeof *all);
@@ -251,6 +251,7 @@ static void take_word(const cli_program *program, const cli_option *o,
 static void take_option(cli_run *run, const cli_option *all,
                         const cli_option *o, const char *text)
 {
+    run->given[o - all] = true;
     switch (o->kind) {
     case CLI_KIND_FLAG:
         *o->to.flag = true;
@@ -290,10 +291,18 @@ static void take_option(cli_run *run, const cli_option *all,
     }
 }
 
+bool cli_given(const cli_run *run, const char *name)
+{
+    for (int k = 0; run->options[k].kind != CLI_KIND_END; k++)
+        if (strcmp(run->options[k].name, name) == 0)
+            return run->given[k];
+    abort(); /* no such option: a mistake of the program */
+}
+
 /* "--name", "--name=TEXT" or "--name TEXT"; how many words that took. */
 static int take_long(cli_run *run, const cli_option *all, char **words)
 {
-    const char *names[MAX_OPTIONS];
+    const char *names[CLI_MAX_OPTIONS];
     const char *word = words[0] + 2;
     size_t length = strcspn(word, "=");
     const char *value = word[length] ? word + length + 1 : NULL;
@@ -462,7 +471,7 @@ static void gather_outputs(cli_run *run, const cli_option *all)
 void cli_parse(const cli_program *program, const cli_option *options, int argc,
                char **argv, cli_run *run)
 {
-    cli_option all[MAX_OPTIONS] = {{0}};
+    cli_option all[CLI_MAX_OPTIONS] = {{0}};
 
     occupy_streams();
     cli_prepare();

@@ -25,6 +25,7 @@ enum {
     CLI_MAX_OPERANDS = 3,
     CLI_MAX_OUTPUTS = 8,
     CLI_MAX_DEPTH = 8,
+    CLI_MAX_OPTIONS = 80,
     CLI_DURATION = 32,
 };
 
@@ -139,7 +140,8 @@ typedef struct cli_program {
 /* One run: what the command line said, and what is to be reported. */
 typedef struct cli_run {
     const cli_program *program;
-    const cli_option *options; /* of the program alone */
+    const cli_option *options;   /* of the program alone */
+    bool given[CLI_MAX_OPTIONS]; /* which of them the command line has */
     int num_operands;
     char **operand;
     char **argv;
@@ -189,6 +191,10 @@ cli_refuse(const cli_program *program, const char *format, ...);
 _Noreturn void cli_refuse_name(const cli_program *program, const char *what,
                                const char *word, int64_t count,
                                const char *const *names);
+
+/** Whether the command line has that option of the program, "every", even if its
+ * value is the default. */
+bool cli_given(const cli_run *run, const char *name);
 
 /** The row of a table that has that name, as ritz_row_find, or the end of the
  * program. */

@@ -24,7 +24,6 @@ static void take_options(const cli_run *run, simulation_options *given)
         cli_refuse(program, "--checkpoint needs --step");
     if (given->checkpoint && !run->output)
         cli_refuse(program, "--checkpoint needs -o");
-    simulation_check_loop(program, given);
     simulation_check_switched(program, given);
     if (given->accuracy == 0.0)
         given->accuracy = 1e-3;
@@ -226,9 +225,12 @@ static ritz_status simulate_model(simulation_task *d,
 }
 
 /* A scene whose rate of spin changes has a run of its own. */
-static ritz_status check_spin(const simulation_options *given,
+static ritz_status check_spin(const cli_run *run,
+                              const simulation_options *given,
                               const simulation_kind *kind)
 {
+    char sentence[512] = "";
+
     RITZ_REFUSE_IF(kind, RITZ_ERR_ARGUMENT,
                    "the rate of spin of this scene changes, which %s does not "
                    "take",
@@ -236,6 +238,9 @@ static ritz_status check_spin(const simulation_options *given,
     RITZ_REFUSE_IF(given->step == 0.0, RITZ_ERR_ARGUMENT,
                    "a rate of spin that changes needs --step: no step is "
                    "chosen by an accuracy");
+    RITZ_REFUSE_IF(
+        simulation_misuses(run, SIMULATION_SPIN, sizeof sentence, sentence),
+        RITZ_ERR_ARGUMENT, "%s", sentence);
     return RITZ_OK;
 }
 
@@ -265,13 +270,18 @@ static ritz_status simulate_response(simulation_task *d)
                    RITZ_ERR_ARGUMENT,
                    "nothing moves it: give --input NAME=SIGNAL or --initial");
     RITZ_CHECK(simulation_find_kind(given, &kind));
+    RITZ_REFUSE_IF(cli_given(run, "up-to-hz") && !given->sweep &&
+                       d->subject.kind != RITZ_MODEL_COMPONENT,
+                   RITZ_ERR_ARGUMENT,
+                   "--up-to-hz is for components, whose modes are computed: "
+                   "this model is taken with all of its own");
     RITZ_REFUSE_IF(kind && given->step == 0.0, RITZ_ERR_ARGUMENT,
                    "%s needs --step: no step is chosen by an accuracy",
                    kind->option);
     if (kind && kind->prepare)
         RITZ_CHECK_IN(kind->option, kind->prepare(d));
     if (simulation_spins(d))
-        RITZ_CHECK(check_spin(given, kind));
+        RITZ_CHECK(check_spin(run, given, kind));
     RITZ_CHECK(simulation_long_run(d, &request,
                                    kind                  ? kind->simulate
                                    : simulation_spins(d) ? simulation_spin
@@ -339,6 +349,7 @@ ritz_status simulation_run(cli_run *run, simulation_options *given)
     d = {.run = run, .given = given, .reached = {.left = -1}};
     ritz_cost cost = {0};
 
+    simulation_check_options(run, given);
     RITZ_CHECK_IN("--sweep", simulation_sweep_prepare(run, given));
     take_options(run, given);
     RITZ_CHECK(read_subject(&d));

@@ -35,9 +35,22 @@ typedef ritz_status simulation_function(simulation_task *task,
                                         const ritz_simulation_request *request,
                                         ritz_simulation *out);
 
+/* Kinds of runs, as bits; --cost is that without an output. */
+enum {
+    SIMULATION_LINEAR = 1,
+    SIMULATION_CONSTRAINTS = 2,
+    SIMULATION_SWITCHED = 4,
+    SIMULATION_CONTROLLER = 8,
+    SIMULATION_SWEEP = 16,
+    SIMULATION_SPIN = 32,
+    SIMULATION_RUN = 63, /* all so far */
+    SIMULATION_COST = 64,
+};
+
 /* A kind of run that is not that of one linear model. */
 typedef struct simulation_kind {
     const char *option; /* the option that requests it, "--switched" */
+    unsigned use;       /* its bit */
     bool (*asked)(const simulation_options *given);
     simulation_function *simulate;
     /** Read the files that options name, once before all runs; NULL: none. */
@@ -52,6 +65,15 @@ extern const simulation_kind simulation_kinds[];
 ritz_status simulation_find_kind(const simulation_options *given,
                                  const simulation_kind **out);
 
+/** End the program if an option is given that the run does not use. */
+void simulation_check_options(const cli_run *run,
+                              const simulation_options *given);
+
+/** Whether an option is given that a kind of run does not use, and the sentence
+ * that says so. */
+bool simulation_misuses(const cli_run *run, unsigned use, size_t size,
+                        char *out);
+
 /** The bodies of a scene, joined over time as --constraints says. */
 simulation_function simulation_constrained;
 bool simulation_is_constrained(const simulation_options *given);
@@ -60,11 +82,6 @@ bool simulation_is_constrained(const simulation_options *given);
 bool simulation_is_controlled(const simulation_options *given);
 simulation_function simulation_controlled;
 ritz_status simulation_prepare_loop(simulation_task *task);
-
-/** End the program if options of a loop are given without its controller, or
- * exclude each other. */
-void simulation_check_loop(const cli_program *program,
-                           const simulation_options *given);
 
 /**
  * Carry out a run. With --checkpoint, continue from the checkpoint if it

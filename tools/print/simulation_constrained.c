@@ -114,15 +114,36 @@ static void warn_of_ringing(cli_run *run, double step,
                  facts->force_rounding);
 }
 
-static ritz_status refuse_options(const simulation_task *task)
+static ritz_status check_scene(const simulation_task *task)
 {
     RITZ_REFUSE_IF(task->stage.count == 0, RITZ_ERR_ARGUMENT,
                    "'%s' is no scene: --constraints joins bodies that are not "
                    "joined yet",
                    task->run->operand[0]);
-    RITZ_REFUSE_IF(task->given->model.damper.count > 0, RITZ_ERR_ARGUMENT,
-                   "--damper is of the joined system: give the value in the "
-                   "scene");
+    return RITZ_OK;
+}
+
+/* Refuse an integrator that would not be used, and a --rho that it has not. */
+static ritz_status check_integrator(const simulation_task *task,
+                                    const ritz_constrained_request *how)
+{
+    const ritz_integrator *asked = task->given->integrator;
+    const bool given = cli_given(task->run, "method");
+    const bool alpha = asked == &ritz_integrator_generalised_alpha;
+
+    RITZ_REFUSE_IF(given && !how->method->integrator && !alpha,
+                   RITZ_ERR_ARGUMENT,
+                   "%s is generalised-alpha: --method %s is not for it",
+                   how->method->name, asked->name);
+    RITZ_REFUSE_IF(given && asked == &ritz_integrator_modal, RITZ_ERR_ARGUMENT,
+                   "--method modal is not for bodies that forces join: take "
+                   "trapezoidal");
+    RITZ_REFUSE_IF(cli_given(task->run, "rho") && how->method->integrator &&
+                       !alpha,
+                   RITZ_ERR_ARGUMENT,
+                   "--rho is for --method generalised-alpha and index-2, not "
+                   "for %s",
+                   given ? asked->name : how->method->integrator->name);
     return RITZ_OK;
 }
 
@@ -146,7 +167,8 @@ ritz_status simulation_constrained(simulation_task *task,
     RITZ_CHECK_IN("--constraints",
                   ritz_constrained_parse(given->constraints, &how));
     how.any_step = given->any_step;
-    RITZ_CHECK(refuse_options(task));
+    RITZ_CHECK(check_scene(task));
+    RITZ_CHECK(check_integrator(task, &how));
     RITZ_CHECK(ritz_stage_unjoined(&task->stage, task->setting, task->m.at,
                                    &task->m.damping, &bodies));
     RITZ_CHECK(find_start(given, &bodies, task->x0, &x0));

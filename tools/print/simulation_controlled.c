@@ -11,20 +11,6 @@ bool simulation_is_controlled(const simulation_options *given)
     return given->loops.controller != NULL;
 }
 
-void simulation_check_loop(const cli_program *program,
-                           const simulation_options *given)
-{
-    const loop_options *loop = &given->loops;
-
-    if (!loop->controller &&
-        (loop->connect.count > 0 || loop->feedback || loop->force ||
-         given->way || given->sample > 0.0 || given->delay > 0.0 ||
-         given->discrete))
-        cli_refuse(program, "--connect, --feedback, --loop, --sample, --delay, "
-                            "--discrete and --force say how a loop is closed: "
-                            "give its --controller");
-}
-
 /* What is said of this step, and the least unstable one that was found. */
 static void say_split(cli_run *run, bool sampled, const ritz_outlook *seen)
 {

@@ -106,10 +106,6 @@ ritz_status simulation_say_costs(simulation_task *d, const double band_hz[2])
     RITZ_REFUSE_IF(d->subject.kind != RITZ_MODEL_DENSE, RITZ_ERR_ARGUMENT,
                    "--cost is of reduced components and systems");
     RITZ_CHECK(simulation_find_kind(given, &kind));
-    RITZ_REFUSE_IF(kind && !simulation_is_controlled(given), RITZ_ERR_ARGUMENT,
-                   "--cost is of a model, alone or in a closed loop: %s cannot "
-                   "be used with it",
-                   kind->option);
     RITZ_CHECK(simulation_record_cost(run, d->subject, band_hz, &cost));
     model_set_cost(run, &cost);
     say_cost_head(run, &cost);

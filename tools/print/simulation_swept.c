@@ -36,7 +36,7 @@ static const sweep_basis *find_basis(const char *name)
 
 bool simulation_sweep_asked(const simulation_options *given)
 {
-    return given->sweep;
+    return given->sweeps.count > 0;
 }
 
 /* Read the path after JOINT=. */
@@ -65,15 +65,17 @@ static void check_at(const cli_run *run, const char *sweep, const char *at)
     }
 }
 
-/* Refuse a number of modes that no basis of the run is cut to. */
+/* Refuse a number of modes, or their highest, that no basis of the run is cut
+   to. */
 static void check_modes(const cli_run *run, const simulation_options *given)
 {
     const char *against = given->sweep_against;
 
-    if (given->sweep_modes > 0 && !find_basis(given->sweep_basis)->cut &&
+    if ((given->sweep_modes > 0 || given->up_to_hz > 0.0) &&
+        !find_basis(given->sweep_basis)->cut &&
         !(against && find_basis(against)->cut))
-        cli_refuse(run->program,
-                   "--sweep-modes has no effect on a basis of all modes");
+        cli_refuse(run->program, "--%s has no effect on a basis of all modes",
+                   given->sweep_modes > 0 ? "sweep-modes" : "up-to-hz");
 }
 
 ritz_status simulation_sweep_prepare(cli_run *run, simulation_options *given)
@@ -86,12 +88,8 @@ ritz_status simulation_sweep_prepare(cli_run *run, simulation_options *given)
         cli_refuse(run->program, "--sweep is given twice: one joint moves");
     if (given->sweeps.count > 0)
         given->sweep = given->sweeps.text[0];
-    if (!given->sweep) {
-        if (given->sweep_against || given->sweep_modes > 0 ||
-            strcmp(given->sweep_basis, "switched") != 0)
-            cli_refuse(run->program, "--sweep-... needs --sweep");
+    if (!given->sweep)
         return RITZ_OK;
-    }
     check_modes(run, given);
     RITZ_REFUSE_IF(ritz_container_seems(run->operand[0]), RITZ_ERR_ARGUMENT,
                    "'%s' is not a scene: joints of a scene move",
@@ -108,11 +106,8 @@ ritz_status simulation_sweep_prepare(cli_run *run, simulation_options *given)
     given->model.at = given->sweep_at;
     if (given->seconds == 0.0)
         given->seconds = path.seconds;
-    if (strcmp(given->method, "modal") == 0)
+    if (!cli_given(run, "method"))
         given->method = "trapezoidal"; /* the default of other runs */
-    if (given->model.damper.count > 0)
-        cli_refuse(run->program,
-                   "--damper has no effect on a joint that moves");
     return RITZ_OK;
 }
 

@@ -19,38 +19,9 @@ bool simulation_switched_asked(const simulation_options *given)
     return given->switched != NULL;
 }
 
-/* An option that says how models are switched; NULL: none is given. */
-static const char *find_switching_option(const simulation_options *given)
-{
-    const struct {
-        bool given;
-        const char *name;
-    } all[] = {
-        {given->switch_interval > 0.0, "--switch-interval"},
-        {given->indicator > 0.0, "--indicator"},
-        {given->share_of != NULL, "--share-of"},
-        {given->look_ahead, "--look-ahead"},
-        {given->inner != NULL, "--inner"},
-        {given->jump != NULL, "--jump"},
-        {given->hysteresis >= 0.0, "--hysteresis"},
-        {given->dwell >= 0.0, "--dwell"},
-        {given->redundant, "--redundant"},
-    };
-
-    for (size_t k = 0; k < sizeof all / sizeof *all; k++)
-        if (all[k].given)
-            return all[k].name;
-    return NULL;
-}
-
 void simulation_check_switched(const cli_program *program,
                                simulation_options *given)
 {
-    const char *option = find_switching_option(given);
-
-    if (!given->switched && option)
-        cli_refuse(program, "%s is of switched models: give --switched too",
-                   option);
     if (given->switched && given->integrator != &ritz_integrator_modal)
         cli_refuse(program,
                    "--switched propagates each set exactly, by its modes: "
