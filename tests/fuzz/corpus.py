@@ -346,7 +346,8 @@ SCENE = {
             "spin: {axis: [0, 1, 2], through: [1, 0, 0], "
             "profile: [[0, 0], [1, 2.5], [3, -1]]}\nspin_model: ruthless\n",
     "ramp": "scene: s\ncomponents: {a: {model: a.h5}}\n"
-            "spin: {axis: [0, 0, 1], ramp: {to: 6, seconds: 15}}\n",
+            "spin: {axis: [0, 0, 1], ramp: {to: 6, seconds: 15}, "
+            "negligible: 0.01}\n",
     "anchors": "scene: &x s\ncomponents: {a: {model: *x}}\n",
 }
 SIGNAL = {

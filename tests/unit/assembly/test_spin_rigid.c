@@ -214,6 +214,58 @@ static void rotation_has_the_potential_of_finite_angles(void **)
             assert_near(ritz_dense_col(&found, j)[i], curvature(i, j), 5e-6);
 }
 
+/* ---- an arm to a component that names its loads --------------------------- */
+
+#define ARMED                                                                  \
+    "scene: armed\n"                                                           \
+    "components:\n"                                                            \
+    "  hub: {model: a.h5, basis: rigid}\n"                                     \
+    "  mass: {model: a.h5, basis: rigid, stiffening: {spin_zz: none}}\n"       \
+    "joints:\n"                                                                \
+    "  - {name: p, between: [hub/a, mass/a], type: rigid,\n"                   \
+    "     offset: [0.5, 0, 0]}\n"                                              \
+    "spin: {axis: [0, 0, 1], rate: 1}\n"
+
+static const swarm centre = {
+    {0.1, 0.1, 0.1}, {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.3}, {0.0, 0.0, -0.3}}};
+static const swarm point = {
+    {2.0, 0.0, 0.0}, {{0.5, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.5, 1.0, 0.0}}};
+
+static ritz_status armed_stage(ritz_scene *scene, ritz_stage *stage)
+{
+    RITZ_OWN(ritz_bodies) body = {0};
+    ritz_reduced_load *load = NULL;
+
+    RITZ_CHECK(ritz_scene_parse("armed.yaml", ARMED, scene));
+    RITZ_CHECK(ritz_bodies_new(2, &body));
+    RITZ_CHECK(swarm_body(&centre, 0.0, &body.item[0]));
+    RITZ_CHECK(swarm_body(&point, 0.0, &body.item[1]));
+    RITZ_CHECK_NEW(load, 1);
+    body.item[1].load = load;
+    body.item[1].num_loads = 1;
+    snprintf(load->name, sizeof load->name, "none");
+    RITZ_CHECK(ritz_dense_new(6, 6, &load->KG));
+    return ritz_stage_from(scene, body.item, stage);
+}
+
+/* The load of the mass, 0, has not the arm of 0.5 that leads to it: flapping of
+   the hub has the stiffness m d^2 - int z^2, and rotation about the axis none. */
+static void an_arm_to_a_component_with_loads_stiffens(void **)
+{
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_configuration) rest = {0};
+    RITZ_OWN(ritz_dense) found = {0};
+
+    assert_ok(armed_stage(&scene, &stage));
+    scene.spin.given = false;
+    assert_ok(ritz_stage_assemble(&stage, scene.setting, &rest));
+    scene.spin.given = true;
+    assert_ok(row_terms(&stage, &rest, &found));
+    assert_near(ritz_dense_col(&found, 4)[4], 2.0 * 0.25 - 0.2 * 0.09, 1e-12);
+    assert_near(ritz_dense_col(&found, 5)[5], 0.0, 1e-12);
+}
+
 /* ---- a hinged blade ------------------------------------------------------ */
 
 #define HINGED                                                                 \
@@ -438,6 +490,7 @@ static void every_allocation_may_fail(void **)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(rotation_has_the_potential_of_finite_angles),
+    cmocka_unit_test(an_arm_to_a_component_with_loads_stiffens),
     cmocka_unit_test(a_hinged_blade_flaps_and_lags_by_closed_forms),
     cmocka_unit_test(a_mass_beyond_the_end_stiffens_a_blade),
     cmocka_unit_test(an_inconsistent_model_leaves_rotation_out),
