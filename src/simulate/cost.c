@@ -137,7 +137,7 @@ ritz_status ritz_simulate_step_cost(ritz_model model,
 
     RITZ_REFUSE_IF(!(step > 0.0) || !isfinite(step), RITZ_ERR_ARGUMENT,
                    "%g s is no step", step);
-    RITZ_CHECK(ritz_motion_new(model, &request, &motion));
+    RITZ_CHECK(ritz_motion_full(model, &request, &motion));
     RITZ_CHECK_NEW(u, motion.B.ncol);
     RITZ_CHECK(ritz_march_new(&motion, integrator, step, request.rho, &march));
     return ritz_march_cost(&march, u, out);

@@ -31,6 +31,12 @@ void ritz_motion_add(const ritz_motion *motion, ritz_term term, double alpha,
     const ritz_sparse *const all[] = {&motion->sK, &motion->sM, &motion->sD};
     const ritz_sparse *sparse = all[term];
 
+    if (motion->form == RITZ_FORM_MODAL && term != RITZ_DAMPING) {
+        for (int64_t k = 0; k < motion->n; k++)
+            y[k] +=
+                alpha * (term == RITZ_MASS ? 1.0 : motion->lambda[k]) * x[k];
+        return;
+    }
     if (motion->form != RITZ_FORM_SPARSE) {
         ritz_motion_gemv(dense[term], alpha, x, y);
         return;
@@ -48,8 +54,13 @@ double ritz_motion_form(const ritz_dense *A, const double *x)
 {
     double sum = 0.0;
 
-    for (int64_t j = 0; j < A->ncol; j++)
-        sum += x[j] * ritz_motion_dot(A->nrow, ritz_dense_col(A, j), x);
+    for (int64_t j = 0; j < A->ncol; j++) {
+        const double *a = ritz_dense_col(A, j);
+
+        sum +=
+            x[j] * (a[j] * x[j] + 2.0 * ritz_motion_dot(A->nrow - j - 1,
+                                                        a + j + 1, x + j + 1));
+    }
     return sum;
 }
 
@@ -59,9 +70,15 @@ static ritz_status factor_dense(const ritz_motion *motion, double m, double d,
     RITZ_OWN(ritz_dense) sum = {0};
 
     RITZ_CHECK(ritz_dense_new(F->n, F->n, &sum));
-    for (int64_t i = 0; i < F->n * F->n; i++)
-        sum.val[i] = m * motion->M.val[i] + k * motion->K.val[i] +
-                     (motion->D.val ? d * motion->D.val[i] : 0.0);
+    if (motion->D.val)
+        ritz_dense_add(d, &motion->D, &sum);
+    if (motion->form == RITZ_FORM_MODAL) {
+        for (int64_t j = 0; j < F->n; j++)
+            ritz_dense_col(&sum, j)[j] += m + k * motion->lambda[j];
+    } else {
+        ritz_dense_add(m, &motion->M, &sum);
+        ritz_dense_add(k, &motion->K, &sum);
+    }
     RITZ_CHECK_IN("a step", ritz_general_factor_new(&sum, &F->dense));
     return RITZ_OK;
 }

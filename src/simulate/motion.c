@@ -334,7 +334,7 @@ ritz_status ritz_motion_new(ritz_model subject,
         return motion_of_states(subject.states, out);
     }
     if (subject.kind == RITZ_MODEL_DENSE)
-        return ritz_motion_dense(subject, modal, out);
+        return ritz_motion_dense(subject, true, out);
     if (modal)
         return motion_of_modes(subject.component, subject.damping,
                                request->up_to_hz, out);
@@ -343,6 +343,17 @@ ritz_status ritz_motion_new(ritz_model subject,
                    "modal, trapezoidal or generalised-alpha",
                    integrator->name);
     return motion_of_sparse(subject.component, subject.damping, out);
+}
+
+ritz_status ritz_motion_full(ritz_model subject,
+                             const ritz_simulation_request *request,
+                             ritz_motion *out)
+{
+    const bool modal = request->integrator == &ritz_integrator_modal;
+
+    return subject.kind == RITZ_MODEL_DENSE
+               ? ritz_motion_dense(subject, modal, out)
+               : ritz_motion_new(subject, request, out);
 }
 
 void ritz_motion_free(ritz_motion *motion)

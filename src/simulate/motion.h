@@ -51,10 +51,17 @@ ritz_status ritz_motion_dense(ritz_model subject, bool modal, ritz_motion *out);
 /** Modal, with the matrices of @p modes, which are moved. */
 ritz_status ritz_motion_take(ritz_modal_model *modes, ritz_motion *m);
 
-/** The form that a subject and an integrator need. */
+/** The form that a subject and an integrator need: a dense model is integrated
+ * in its modes, by every integrator. */
 ritz_status ritz_motion_new(ritz_model subject,
                             const ritz_simulation_request *request,
                             ritz_motion *out);
+
+/** The same, with full matrices of a dense model by all integrators but
+ * modal. */
+ritz_status ritz_motion_full(ritz_model subject,
+                             const ritz_simulation_request *request,
+                             ritz_motion *out);
 
 /* A matrix of a dense or sparse motion. */
 typedef enum ritz_term {
@@ -70,7 +77,7 @@ void ritz_motion_add(const ritz_motion *motion, ritz_term term, double alpha,
 /** y += alpha A x of a dense matrix; y stays as it is if A is {0}. */
 void ritz_motion_gemv(const ritz_dense *A, double alpha, const double *x,
                       double *y);
-/** x'A x, without room for A x. */
+/** x'A x of a symmetric A, whose lower triangle is read. */
 double ritz_motion_form(const ritz_dense *A, const double *x);
 double ritz_motion_dot(int64_t n, const double *a, const double *b);
 

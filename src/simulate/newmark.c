@@ -19,6 +19,12 @@
  * Where an input has jumped since the end of the last step, a_0 is made to
  * follow: a_0 += M^-1 B (u_0 - u_last).
  *
+ * In modes K and M are diagonal. If D is too, so is the matrix of a step, S. If
+ * D couples modes, S = A + c D with A diagonal and c = (1 - alpha_f) gamma h, so
+ * that D v_f* = (S - A) v_f* / c needs no product:
+ *
+ *     S y = A v_f* + c (B u_f - alpha_m M a_0 - K x_f*),   a_1 = (y - v_f*) / c
+ *
  * Work of the inputs is u'B (x_1 - x_0), u = (u_0 + u_1) / 2, and damping takes
  * h v'D v with v = (x_1 - x_0) / h. Of the trapezoidal rule, alpha = 0,
  * beta = 1/4, gamma = 1/2, whose steps begin and end in equilibrium, energies
@@ -44,6 +50,11 @@ typedef struct newmark {
     double *rhs;    /* n */
     double *work;   /* n */
     double *last;   /* inputs at the end of the last step */
+    double c;
+    double *A;       /* n; NULL: full or sparse matrices */
+    bool uncoupled;  /* D is diagonal, and S too: A + c D */
+    ritz_dense half; /* symmetric part of D, if modes are coupled by it and
+                        energies requested; {0} */
 } newmark;
 
 static void release_newmark(void *own)
@@ -51,7 +62,8 @@ static void release_newmark(void *own)
     newmark *s = own;
 
     ritz_effective_free(&s->F);
-    RITZ_FREE(s->memory, s->x0, s->rhs, s->work, s);
+    ritz_dense_free(&s->half);
+    RITZ_FREE(s->memory, s->x0, s->rhs, s->work, s->A, s);
 }
 
 /* a from equilibrium; dofs without mass have none. */
@@ -67,9 +79,11 @@ static ritz_status settle_start(ritz_march *march, const double *u)
     ritz_motion_add(m, RITZ_DAMPING, -1.0, march->v, s->a);
     for (int64_t k = 0; m->massless && k < m->n; k++)
         s->a[k] = m->massless[k] ? 0.0 : s->a[k];
-    RITZ_CHECK_IN(
-        "M", ritz_effective_new(m, 1.0, 0.0, 0.0, m->massless != NULL, &mass));
-    RITZ_CHECK(ritz_effective_solve(&mass, 1, s->a));
+    if (m->form != RITZ_FORM_MODAL) {
+        RITZ_CHECK_IN("M", ritz_effective_new(m, 1.0, 0.0, 0.0,
+                                              m->massless != NULL, &mass));
+        RITZ_CHECK(ritz_effective_solve(&mass, 1, s->a));
+    }
     memcpy(s->last, u, (size_t)m->B.ncol * sizeof *u);
     return RITZ_OK;
 }
@@ -85,7 +99,7 @@ static void follow_jumps(const ritz_motion *m, const double *u, newmark *s)
     }
 }
 
-/* The right side: loads and what the predictors leave of equilibrium. */
+/* The right side, without damping forces; v_f* in `work`. */
 static void load_step(const ritz_march *march, const double *u0,
                       const double *u1, newmark *s)
 {
@@ -106,7 +120,46 @@ static void load_step(const ritz_march *march, const double *u0,
     ritz_motion_add(m, RITZ_STIFFNESS, -1.0, s->work, s->rhs);
     for (int64_t k = 0; k < m->n; k++)
         s->work[k] = march->v[k] + f1 * h * (1.0 - w->gamma) * s->a[k];
-    ritz_motion_add(m, RITZ_DAMPING, -1.0, s->work, s->rhs);
+}
+
+/* a_1 in rhs. */
+static ritz_status solve_step(const ritz_motion *m, newmark *s)
+{
+    if (!s->A) {
+        ritz_motion_add(m, RITZ_DAMPING, -1.0, s->work, s->rhs);
+        return ritz_effective_solve(&s->F, 1, s->rhs);
+    }
+    if (s->uncoupled) {
+        for (int64_t k = 0; k < m->n; k++) {
+            const double d = ritz_dense_col(&m->D, k)[k];
+
+            s->rhs[k] = (s->rhs[k] - d * s->work[k]) / (s->A[k] + s->c * d);
+        }
+        return RITZ_OK;
+    }
+    for (int64_t k = 0; k < m->n; k++)
+        s->rhs[k] = s->A[k] * s->work[k] + s->c * s->rhs[k];
+    RITZ_CHECK(ritz_effective_solve(&s->F, 1, s->rhs));
+    for (int64_t k = 0; k < m->n; k++)
+        s->rhs[k] = (s->rhs[k] - s->work[k]) / s->c;
+    return RITZ_OK;
+}
+
+/* x'D x */
+static double damping_form(const ritz_motion *m, newmark *s, const double *x)
+{
+    double sum = 0.0;
+
+    if (s->uncoupled) {
+        for (int64_t k = 0; k < m->n; k++)
+            sum += ritz_dense_col(&m->D, k)[k] * x[k] * x[k];
+        return sum;
+    }
+    if (s->half.val)
+        return ritz_motion_form(&s->half, x);
+    memset(s->work, 0, (size_t)m->n * sizeof *s->work);
+    ritz_motion_add(m, RITZ_DAMPING, 1.0, x, s->work);
+    return ritz_motion_dot(m->n, x, s->work);
 }
 
 /* x, v and a at the end; a_1 is in rhs. */
@@ -136,9 +189,7 @@ static void account_energy(ritz_march *march, const double *u0,
     for (int64_t j = 0; j < m->B.ncol; j++)
         march->work += 0.5 * (u0[j] + u1[j]) *
                        ritz_motion_dot(m->n, ritz_dense_col(&m->B, j), s->x0);
-    memset(s->work, 0, (size_t)m->n * sizeof *s->work);
-    ritz_motion_add(m, RITZ_DAMPING, 1.0 / march->step, s->x0, s->work);
-    march->dissipated += ritz_motion_dot(m->n, s->x0, s->work);
+    march->dissipated += damping_form(m, s, s->x0) / march->step;
 }
 
 static ritz_status advance_newmark(ritz_march *march, const double *u0,
@@ -151,7 +202,7 @@ static ritz_status advance_newmark(ritz_march *march, const double *u0,
     if (m->energies)
         memcpy(s->x0, march->x, (size_t)m->n * sizeof *s->x0);
     load_step(march, u0, u1, s);
-    RITZ_CHECK(ritz_effective_solve(&s->F, 1, s->rhs));
+    RITZ_CHECK(solve_step(m, s));
     move_step(march, s);
     if (m->energies)
         account_energy(march, u0, u1, s);
@@ -159,10 +210,41 @@ static ritz_status advance_newmark(ritz_march *march, const double *u0,
     return RITZ_OK;
 }
 
+/* Whether D is diagonal but for rounding, as `modal` decides it. */
+static ritz_status is_uncoupled(const ritz_motion *motion, bool *out)
+{
+    RITZ_OWN(ritz_groups) parts = {0};
+
+    RITZ_CHECK(ritz_groups_new(
+        &motion->D, RITZ_SUM_ROUNDING * ritz_dense_max(&motion->D), &parts));
+    *out = parts.count == motion->n;
+    return RITZ_OK;
+}
+
+static ritz_status factor_step(const ritz_motion *motion, double step,
+                               newmark *s)
+{
+    const double f1 = 1.0 - s->w.alpha_f, m = 1.0 - s->w.alpha_m;
+    const double k = f1 * s->w.beta * step * step;
+
+    s->c = f1 * s->w.gamma * step;
+    if (motion->form == RITZ_FORM_MODAL) {
+        RITZ_CHECK_NEW(s->A, motion->n);
+        for (int64_t j = 0; j < motion->n; j++)
+            s->A[j] = m + k * motion->lambda[j];
+        RITZ_CHECK(is_uncoupled(motion, &s->uncoupled));
+        if (motion->energies && !s->uncoupled) {
+            RITZ_CHECK(ritz_dense_copy(&motion->D, &s->half));
+            ritz_dense_symmetrise(&s->half);
+        }
+    }
+    return s->uncoupled ? RITZ_OK
+                        : ritz_effective_new(motion, m, s->c, k, false, &s->F);
+}
+
 static ritz_status start_newmark(const ritz_motion *motion, double step,
                                  const ritz_newmark_weights *w, ritz_march *out)
 {
-    double f1 = 1.0 - w->alpha_f;
     newmark *s = NULL;
 
     RITZ_CHECK_NEW(s, 1);
@@ -179,8 +261,7 @@ static ritz_status start_newmark(const ritz_motion *motion, double step,
     RITZ_CHECK_NEW(s->x0, motion->n);
     RITZ_CHECK_NEW(s->rhs, motion->n);
     RITZ_CHECK_NEW(s->work, motion->n);
-    return ritz_effective_new(motion, 1.0 - w->alpha_m, f1 * w->gamma * step,
-                              f1 * w->beta * step * step, false, &s->F);
+    return factor_step(motion, step, s);
 }
 
 /*

@@ -36,6 +36,7 @@ typedef struct spun {
     const ritz_spin_rate *rate;
     const ritz_io *io;
     ritz_dense H;          /* {0}: none */
+    ritz_dense D;          /* its symmetric part, which dissipates; {0}: none */
     ritz_general_factor F; /* of the matrix of a step with `mean` */
     double mean[3];        /* <W>, <W^2> and <W'> of that matrix */
     bool factored;
@@ -60,6 +61,7 @@ static void release_spun(void *own)
     spun *s = own;
 
     ritz_dense_free(&s->H);
+    ritz_dense_free(&s->D);
     ritz_general_factor_free(&s->F);
     ritz_general_factor_free(&s->mass);
     ritz_dense_free(&s->f);
@@ -144,7 +146,7 @@ static void account_step(ritz_march *march, const double *u0, const double *u1)
     const spun *s = march->own;
     const double h = march->step;
 
-    march->dissipated += h * ritz_motion_form(&m->D, s->f.val);
+    march->dissipated += h * ritz_motion_form(&s->D, s->f.val);
     for (int64_t j = 0; j < m->B.ncol; j++)
         march->work +=
             0.5 * h * (u0[j] + u1[j]) *
@@ -270,6 +272,10 @@ static ritz_status start_spun(const ritz_spin_terms *terms,
     RITZ_CHECK(ritz_dense_new(motion->n, 1, &s->f));
     if (terms->S.val || terms->KG.val)
         RITZ_CHECK(ritz_dense_new(motion->n, motion->n, &s->H));
+    if (motion->D.val) {
+        RITZ_CHECK(ritz_dense_copy(&motion->D, &s->D));
+        ritz_dense_symmetrise(&s->D);
+    }
     add_scaled(1.0, &terms->S, &s->H);
     add_scaled(1.0, &terms->KG, &s->H);
     if (ritz_dense_max(&io->Ca) > 0.0)

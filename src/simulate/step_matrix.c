@@ -269,28 +269,13 @@ void ritz_step_matrix_apply(const ritz_step_matrix *E, const double *z,
     ritz_motion_gemv(&E->U, 1.0, E->signal, y);
 }
 
-/* z'W z by the lower triangle. */
-static double triangle_value(const ritz_dense *W, const double *z)
-{
-    const int64_t n = W->nrow;
-    double sum = 0.0;
-
-    for (int64_t j = 0; j < n; j++) {
-        const double *w = ritz_dense_col(W, j);
-
-        sum += z[j] * (w[j] * z[j] +
-                       2.0 * ritz_motion_dot(n - j - 1, w + j + 1, z + j + 1));
-    }
-    return sum;
-}
-
 double ritz_step_matrix_value(const ritz_step_matrix *W, const double *z)
 {
     const int64_t n = W->pairs;
     double sum = 0.0;
 
     if (W->rank < 0)
-        return triangle_value(&W->full, z);
+        return ritz_motion_form(&W->full, z);
     for (int64_t j = 0; j < n; j++) {
         const double *b = W->own[j];
 

@@ -533,7 +533,7 @@ ritz_status ritz_simulate_switched(ritz_model subject,
         found->num_given += switched->library[k].ncol;
     RITZ_CHECK(check_request(subject, request, switched));
     asked.integrator = &ritz_integrator_trapezoidal; /* full matrices */
-    RITZ_CHECK(ritz_motion_new(subject, &asked, &full));
+    RITZ_CHECK(ritz_motion_full(subject, &asked, &full));
     RITZ_CHECK(ritz_library_new(request, switched, &full, &library));
     found->num_vectors = library.num_vectors;
     RITZ_CHECK_IN("--switched", ritz_library_stable(&library, switched, found));

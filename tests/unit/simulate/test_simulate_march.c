@@ -79,6 +79,63 @@ static void a_march_continues_from_its_numbers_bit_for_bit(void **state)
     }
 }
 
+/* Advance full matrices and modes by the same steps; compare outputs, work and
+   dissipation. Rounding is that of 400 steps, of some eps each. */
+static void compare_forms(ritz_model model, const ritz_integrator *integrator)
+{
+    ritz_march march[2] = {0};
+    ritz_motion motion[2] = {0};
+    double most = 0.0, off = 0.0;
+
+    for (int k = 0; k < 2; k++) {
+        assert_ok(ritz_motion_dense(model, k == 1, &motion[k]));
+        motion[k].energies = true;
+        assert_ok(ritz_march_new(&motion[k], integrator, 0.01, 0.6, &march[k]));
+        assert_ok(march[k].settle(&march[k], (double[]){0.0}));
+    }
+    for (int step = 0; step < 400; step++) {
+        double y[2];
+
+        for (int k = 0; k < 2; k++) {
+            const double u[2] = {sin(0.2 * step), sin(0.2 * (step + 1))};
+
+            assert_ok(march[k].advance(&march[k], &u[0], &u[1]));
+            ritz_march_outputs(&march[k], &u[1], &y[k]);
+        }
+        most = fmax(most, fabs(y[0]));
+        off = fmax(off, fabs(y[1] - y[0]));
+    }
+    assert_near(off, 0.0, 1e-11 * most);
+    assert_near(march[1].work, march[0].work, 1e-11 * fabs(march[0].work));
+    assert_near(march[1].dissipated, march[0].dissipated,
+                1e-11 * fabs(march[0].work));
+    for (int k = 0; k < 2; k++) {
+        ritz_march_free(&march[k]);
+        ritz_motion_free(&motion[k]);
+    }
+}
+
+/* With no damping, with D that couples modes, and with gyroscopic terms. */
+static void modes_advance_as_full_matrices_do(void **state)
+{
+    static const ritz_integrator *const all[] = {
+        &ritz_integrator_trapezoidal, &ritz_integrator_generalised_alpha,
+        &ritz_integrator_central_difference};
+
+    (void)state;
+    for (int damping = 0; damping < 3; damping++) {
+        RITZ_OWN(motions) m = {0};
+
+        assert_ok(motions_new(damping > 0, &m));
+        for (int64_t j = 0; damping == 2 && j < 2; j++) {
+            ritz_dense_col(&m.D, j)[j + 1] += 4.0;
+            ritz_dense_col(&m.D, j + 1)[j] -= 4.0;
+        }
+        for (size_t k = 0; k < sizeof all / sizeof *all; k++)
+            compare_forms(m.dense, all[k]);
+    }
+}
+
 /* A point whose velocity is the input; its output is twice its position. */
 static ritz_status advance_point(ritz_march *march, const double *u0,
                                  const double *u1)
@@ -317,6 +374,7 @@ static void a_march_survives_every_allocation(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_march_continues_from_its_numbers_bit_for_bit),
+    cmocka_unit_test(modes_advance_as_full_matrices_do),
     cmocka_unit_test(a_march_may_have_its_own_outputs_and_diagnostics),
     cmocka_unit_test(a_run_that_ended_early_is_continued_bit_for_bit),
     cmocka_unit_test(another_run_is_not_continued),
