@@ -161,6 +161,9 @@ holds '  a loop is measured, not run' \
 json 0 ritz-simulate --cost --step 0.01 --sample 0.05 $loop reduced.h5
 holds '  a sampled one has its own cost, at the step that is given' \
     '[(w["name"], w["step"]) for w in j["loops"]] == [("loop, sampled", 0.01)]'
+# shellcheck disable=SC2086 # $loop is words
+expect 1 'one exponential needs a continuous controller without a delay' \
+    ritz-simulate --cost --loop exact --sample 0.05 $loop reduced.h5
 expect 2 '--switched is for a run that -o writes, not for --cost' \
     ritz-simulate --cost --switched modes --switch-interval 1 reduced.h5
 expect 1 'is of reduced components and systems' ritz-simulate --cost stator.h5

@@ -180,20 +180,20 @@ ritz_status simulation_say_loop_costs(simulation_task *d, double step)
         .rho = given->rho};
     ritz_simulation_request asked = request;
     ritz_controlled way = {0};
+    bool both = false;
 
     if (!d->controller.kind)
         RITZ_CHECK_IN("--controller", simulation_prepare_loop(d));
     way = take_controlled(d);
     RITZ_CHECK(ritz_controlled_step(&way, request.step, &asked.step));
+    both = !way.exact && given->integrator == &ritz_integrator_modal &&
+           !(way.sample > 0.0) && !(way.delay > 0.0) &&
+           2 * ritz_model_order(d->subject) + d->controller.states.A.nrow <=
+               RITZ_LOOP_EXACT;
     sink_list(d->run, "loops");
-    if (!way.exact)
-        RITZ_CHECK(say_loop_cost(d, &way, &asked));
-    way.exact =
-        given->integrator == &ritz_integrator_modal && !(way.sample > 0.0) &&
-        !(way.delay > 0.0) &&
-        ritz_model_order(d->subject) * 2 + d->controller.states.A.nrow <=
-            RITZ_LOOP_EXACT;
-    if (way.exact)
+    RITZ_CHECK(say_loop_cost(d, &way, &asked));
+    way.exact |= both;
+    if (both)
         RITZ_CHECK(say_loop_cost(d, &way, &asked));
     sink_end(d->run);
     return RITZ_OK;
