@@ -25,6 +25,7 @@ static ritz_status system_of(cli_run *run, const ritz_scene *scene,
     RITZ_CHECK(ritz_assemble(&stage, given->at, &made.system));
     RITZ_CHECK(model_write_bodies(run, given->prefix, scene, stage.body));
     RITZ_CHECK(describe_output(run, &made));
+    settings_say(run, scene, made.system.units, NULL);
     RITZ_CHECK(spin_say(run, &stage, &made.system.configuration[0]));
     describe_remarks(run, scene, stage.body);
     RITZ_CHECK(tracks_report(run, &stage, &made.system, given->tracks));

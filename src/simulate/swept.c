@@ -474,7 +474,8 @@ static void find_outputs(const ritz_march *march, const double *u, double *y)
     ritz_motion_gemv(&p->Ca, 1.0, s->y, y);
 }
 
-static const char *const turning[] = {"angle", "actuator_work", "terms_energy"};
+static const char *const turning[] = {"angle_deg", "actuator_work",
+                                      "terms_energy"};
 static const char *const sliding[] = {"position", "actuator_work",
                                       "terms_energy"};
 

@@ -19,7 +19,8 @@ expect 0 'JOINT=FROM:TO:TIME' ritz-simulate --help
         'j["basis"] == "switched" and j["modes"] == 14
          and j["interpolation"] <= 1e-7 and j["against"] == "full"
          and j["response_error"] < 0.05 and j["energy_error"] < 0.05
-         and j["diagnostics"][0]["name"] == "angle"'
+         and j["diagnostics"][0]["name"] == "angle_deg"
+         and j["joints"][0] == {"name": "clock", "setting": 0, "unit": "deg"}'
     holds '  at a rate below the lowest mode, without a warning of it' \
         'j["rate_ratio"] < 1
          and not any("lowest frequency" in w for w in j["warnings"])'
@@ -35,8 +36,12 @@ expect 0 'JOINT=FROM:TO:TIME' ritz-simulate --help
     expect 0 '8 rigid motions: forces of the commanded motion' ritz-simulate \
         --sweep clock=60:0:4s:smooth --sweep-basis one --sweep-against full \
         $run -o one.h5
-    expect 0 'angle                0 to 60, 60 at the end' ritz-info run.h5
+    expect 0 'angle_deg            0 to 60, 60 at the end' ritz-info run.h5
     expect 0 'trapezoidal, step 0.01 s' ritz-info run.h5
+
+    expect 0 'clock from 0 to 60 deg in 4 s' ritz-simulate \
+        --sweep clock=0:60:4s:smooth --sweep-modes 14 $run -o run.h5
+    expect 0 'clock in deg' ritz-assemble scene.yaml -o system.h5
 
     # A file of times and settings; the run ends with the path.
     printf '0 10\n1 20\n2 15\n' >path.tsv

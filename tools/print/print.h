@@ -461,4 +461,17 @@ ritz_status tracks_report(cli_run *run, const ritz_stage *stage,
 ritz_status spin_say(cli_run *run, const ritz_stage *stage,
                      const ritz_configuration *at);
 
+/** "deg" for a joint that turns, else the length among units such as "kg m
+ * s". */
+void settings_unit(const ritz_sweep *sweep, const char *units,
+                   char out[RITZ_NAME_SIZE]);
+
+/**
+ * The joints of a scene that can be set, with their units.
+ *
+ * @param[in] setting  what they are set to; NULL: several configurations
+ */
+void settings_say(cli_run *run, const ritz_scene *scene, const char *units,
+                  const double *setting);
+
 #endif

@@ -189,28 +189,41 @@ static double fastest_rate(const ritz_swept_model *m, const ritz_path *path)
     return fastest;
 }
 
-/* Print the size of the model, the error of its interpolation, and how fast the
-   joint moves; in the record only for the main run. */
-static void say_model(cli_run *run, bool main, const sweep_basis *basis,
-                      const ritz_swept_model *m, const ritz_path *path)
+/* Print how the joint moves, and how fast. */
+static void say_path(const simulation_task *d, const ritz_swept_model *m,
+                     const ritz_path *path, const char *unit)
 {
+    const bool turns = m->unit != 1.0;
+    const double fastest = fastest_rate(m, path);
     const double lowest = 2.0 * RITZ_PI * m->start_hz[0];
-    const double ratio =
-        m->unit != 1.0 && lowest > 0.0 ? fastest_rate(m, path) / lowest : 0.0;
 
+    sink_field(d->run, "sweep", "sweep,from,to,,sweep_seconds",
+               "%s from %g to %g %s in %g s", m->sweep, path->from, path->to,
+               unit, path->seconds);
+    if (!turns) {
+        sink_field(d->run, "rate", "rate", "%.3g %s/s", fastest, unit);
+        return;
+    }
+    if (lowest > 0.0)
+        sink_field(d->run, "rate", "rate,rate_ratio",
+                   "%.3g rad/s, %.2e of the lowest mode's", fastest,
+                   fastest / lowest);
+    if (lowest > 0.0 && fastest >= lowest)
+        cli_warn(d->run,
+                 "the joint turns at %.3g times the lowest frequency: forces "
+                 "that are left out are of the square of that",
+                 fastest / lowest);
+}
+
+/* Print the size of the model, and the error of its interpolation; in the
+   record only for the main run. */
+static void say_basis(cli_run *run, bool main, const sweep_basis *basis,
+                      const ritz_swept_model *m)
+{
     sink_field(run, "basis", main ? "basis,modes,settings,,interpolation" : "",
                "%s: %" PRId64 " modes, computed at %" PRId64
                " settings of %s, interpolated to %.1e",
                basis->name, m->order, m->count, m->sweep, m->error);
-    if (main && m->unit != 1.0 && m->start_hz[0] > 0.0)
-        sink_field(run, "rate", "rate,rate_ratio",
-                   "%.3g rad/s, %.2e of the lowest mode's",
-                   fastest_rate(m, path), ratio);
-    if (main && ratio >= 1.0)
-        cli_warn(run,
-                 "the joint turns at %.3g times the lowest frequency: forces "
-                 "that are left out are of the square of that",
-                 ratio);
 }
 
 /* Warn of what the basis leaves out of the initial state. */
@@ -257,6 +270,21 @@ static ritz_status say_lost_forces(const simulation_task *d,
     return RITZ_OK;
 }
 
+/* Print how the joint moves, and what the basis leaves out. */
+static ritz_status say_start(const simulation_task *d, const ritz_path *path,
+                             const sweep_basis *basis,
+                             const ritz_swept_model *m)
+{
+    int64_t sweep = 0;
+    char unit[RITZ_NAME_SIZE];
+
+    RITZ_CHECK(find_joint(d, &sweep));
+    settings_unit(&d->scene.sweep[sweep], d->m.system.units, unit);
+    say_path(d, m, path, unit);
+    RITZ_CHECK(say_lost_state(d, m));
+    return basis->cut ? say_lost_forces(d, m) : RITZ_OK;
+}
+
 /* Largest difference of the mechanical energy, relative to its largest
    value. */
 static double compare_energies(const ritz_simulation *exact,
@@ -282,11 +310,9 @@ static ritz_status run_basis(const simulation_task *d, bool main,
 
     RITZ_CHECK(make_model(d, path, basis, &made));
     if (!request->from)
-        say_model(d->run, main, basis, &made, path);
+        say_basis(d->run, main, basis, &made);
     if (!request->from && main)
-        RITZ_CHECK(say_lost_state(d, &made));
-    if (!request->from && main && basis->cut)
-        RITZ_CHECK(say_lost_forces(d, &made));
+        RITZ_CHECK(say_start(d, path, basis, &made));
     return ritz_simulate_swept(&made, path, basis->terms, request, out);
 }
 
