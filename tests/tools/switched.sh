@@ -87,6 +87,14 @@ works 'a reduced component is switched' ritz-simulate -q $turn reduced.h5 \
     --checkpoint kept.h5 -o reduced-run.h5
 works 'its checkpoint is removed' test ! -e kept.h5
 
+# A basis of another model fits by its number of rows.
+ritz-import -q --stiffness turn.K.mtx --mass beam.M.mtx --dofs beam.dofs \
+    --input along=11:1 --input across=11:2 --output-at y=10:2 -o other.h5
+expect 0 "basis 'basis.h5' was made from 'turn.h5', whose SHA-256 differs from" \
+    ritz-simulate $turn other.h5 --damping 'rayleigh 10 0' \
+    --switched basis.h5 --switch-interval 0.02 --indicator 0.999999999 \
+    --share-of library -o other-run.h5
+
 # --- refusals ----------------------------------------------------------------
 
 run="ritz-simulate $turn turn.h5 --switch-interval 0.02 -o x.h5"

@@ -77,6 +77,39 @@ static ritz_status take_modes(const simulation_task *task, const char *count,
         &pairs.Phi, 0, modes < pairs.Phi.ncol ? modes : pairs.Phi.ncol, out);
 }
 
+/* The line of the run's input of that path, "SHA-256  PATH"; NULL if it has no
+   sum, as a pipe. */
+static const char *find_sum(const cli_run *run, const char *path)
+{
+    for (int64_t k = 0; k < run->num_inputs; k++)
+        if (strlen(run->input[k]) > RITZ_DIGEST_SIZE &&
+            strcmp(run->input[k] + RITZ_DIGEST_SIZE + 1, path) == 0)
+            return run->input[k];
+    return NULL;
+}
+
+/* Warn of a basis that was made from other files than the model. Its rows may
+   be as many by chance; and the same matrices may be in another file. */
+static ritz_status check_origin(cli_run *run, const char *path)
+{
+    const char *subject = find_sum(run, run->operand[0]);
+    RITZ_OWN(ritz_summary) made = {0};
+
+    if (!subject || !ritz_container_seems(run->operand[0]))
+        return RITZ_OK;
+    RITZ_CHECK(ritz_container_summary(path, &made));
+    for (int64_t k = 0; k < made.num_inputs; k++)
+        if (strncmp(made.input[k], subject, RITZ_DIGEST_SIZE - 1) == 0)
+            return RITZ_OK;
+    if (made.num_inputs > 0)
+        cli_warn(
+            run,
+            "the basis '%s' was made from '%s', whose SHA-256 differs from "
+            "that of '%s': are its vectors of this model?",
+            path, strstr(made.input[0], "  ") + 2, run->operand[0]);
+    return RITZ_OK;
+}
+
 /* Read a basis of Ritz, or a matrix from any foreign file. */
 static ritz_status read_library(cli_run *run, const char *path, ritz_dense *out)
 {
@@ -90,6 +123,7 @@ static ritz_status read_library(cli_run *run, const char *path, ritz_dense *out)
         RITZ_CHECK(model_read(run, path, MODEL_BASIS, &m));
         RITZ_REFUSE_IF(m.basis.states, RITZ_ERR_ARGUMENT,
                        "'%s' is a basis of states, not of displacements", path);
+        RITZ_CHECK(check_origin(run, path));
         RITZ_MOVE(*out, m.basis.T);
         return RITZ_OK;
     }
