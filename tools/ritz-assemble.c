@@ -27,6 +27,10 @@ static ritz_status system_of(cli_run *run, const ritz_scene *scene,
     RITZ_CHECK(describe_output(run, &made));
     settings_say(run, scene, made.system.units, NULL);
     RITZ_CHECK(spin_say(run, &stage, &made.system.configuration[0]));
+    RITZ_CHECK(
+        given->at
+            ? axes_say(run, &stage, 1, made.system.configuration[0].setting)
+            : axes_say(run, &stage, scene->num_configurations, scene->setting));
     describe_remarks(run, scene, stage.body);
     RITZ_CHECK(tracks_report(run, &stage, &made.system, given->tracks));
     cli_record(run, "assemble", made.system.configuration[0].K.nrow);
@@ -44,6 +48,7 @@ static ritz_status full_of(cli_run *run, const ritz_scene *scene,
     RITZ_CHECK_IN("--at", ritz_scene_settings(scene, at ? at : "", setting));
     RITZ_CHECK(ritz_assemble_full(scene, setting, &full.component, NULL));
     RITZ_CHECK(describe_output(run, &full));
+    RITZ_CHECK(axes_say_full(run, scene, setting));
     cli_record(run, "full", full.component.num_dofs);
     return RITZ_OK;
 }

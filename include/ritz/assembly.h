@@ -111,6 +111,37 @@ ritz_status ritz_stage_unjoined(const ritz_stage *stage, const double *setting,
                                 const ritz_damping *damping,
                                 ritz_unjoined *out);
 
+/* An axis of a joint in a closed loop that departs a little from a direction in
+   which the loop can move. */
+typedef struct ritz_near_axis {
+    int64_t joint;   /* of the scene */
+    int which;       /* 0; 1: the second axis of a universal joint */
+    double angle;    /* from that direction, rad */
+    bool taken;      /* joints are joined as if it had that direction; false: it
+                      has its own and locks the motion */
+    double exact[3]; /* that direction, in the axes that the scene uses */
+    int64_t others;  /* axes of its loops that depart too */
+} ritz_near_axis;
+
+typedef struct ritz_near_axes {
+    int64_t count, room;
+    ritz_near_axis *item;
+} ritz_near_axes;
+
+/**
+ * Axes in loops at some settings that a scene gives with too few digits. Up to
+ * 1e-4 rad they are taken as meant, up to 1e-2 they are taken as given, though
+ * they lock a motion. Axes that agree to 1e-9 are not listed.
+ */
+ritz_status ritz_stage_near_axes(const ritz_stage *stage, const double *setting,
+                                 ritz_near_axes *out);
+void ritz_near_axes_free(ritz_near_axes *axes);
+
+/** The same of a scene whose bodies are not reduced; its models are read if
+ * joints close a loop. */
+ritz_status ritz_scene_near_axes(const ritz_scene *scene, const double *setting,
+                                 ritz_near_axes *out);
+
 /** The system at every configuration of the scene, or at @p at alone. A spin of
  * constant rate is in its K, D and inputs; of a rate that changes it is at
  * rest. */

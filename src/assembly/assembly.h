@@ -48,6 +48,7 @@ typedef struct ritz_joint_end {
 typedef struct ritz_joint_pose {
     double R[9]; /* row by row */
     double d[3];
+    double axis[2][3]; /* as those of the joint, to all digits */
 } ritz_joint_pose;
 
 /*
@@ -123,6 +124,9 @@ ritz_status ritz_plane_check_port(ritz_plane plane, const ritz_port_map *port);
 void ritz_turn_about(const double axis[static 3], double degrees,
                      double R[static 9]);
 
+/** Two unit vectors normal to a unit axis and to each other. */
+void ritz_joint_normals(const double axis[static 3], double e[static 2][3]);
+
 /** C = A B. */
 void ritz_turn_product(const double A[static 9], const double B[static 9],
                        double C[static 9]);
@@ -159,6 +163,35 @@ ritz_status ritz_scene_neighbour(const ritz_scene *scene, int64_t k,
  */
 ritz_status ritz_place_joints(const ritz_stage *stage, const double *setting,
                               ritz_joint_pose *pose);
+
+/** Places of all bodies where joints have such poses, a row of twelve numbers
+ * each, as ritz_configuration.places. */
+ritz_status ritz_place_posed(const ritz_stage *stage,
+                             const ritz_joint_pose *pose, ritz_dense *out);
+
+/** Whether joints of a scene, bushings among them, close a loop. */
+ritz_status ritz_scene_loops(const ritz_scene *scene, bool *closed);
+
+/* Closed loops of joints, without those that bushings close. */
+typedef struct ritz_loops {
+    int64_t count, num_joints;
+    double *sign; /* count x num_joints: 1 where a loop goes from the first body
+                     of a joint to the second, -1 back, 0 not through it */
+} ritz_loops;
+
+/** The loops of a stage that tie its bodies if these are rigid. */
+ritz_status ritz_loops_of(const ritz_stage *stage, ritz_loops *out);
+void ritz_loops_free(ritz_loops *loops);
+
+/**
+ * Turn axes of joints in closed loops, by no more than the digits that a scene
+ * gives, to where the loops can move.
+ *
+ * @param[in,out] pose  as ritz_place_joints gives it; its axes
+ * @param[out]    out   as ritz_stage_near_axes; NULL: not wanted
+ */
+ritz_status ritz_settle_axes(const ritz_stage *stage, ritz_joint_pose *pose,
+                             ritz_near_axes *out);
 
 /**
  * Grids of all bodies in the basic frame of the first (of each tree of joints).

@@ -170,6 +170,7 @@ static ritz_status list_relations(const ritz_stage *stage,
 
     RITZ_CHECK_NEW(pose, scene->num_joints);
     RITZ_CHECK(ritz_place_joints(stage, setting, pose));
+    RITZ_CHECK(ritz_settle_axes(stage, pose, NULL));
     for (int64_t j = 0; j < scene->num_joints; j++) {
         const ritz_joint *joint = &scene->joint[j];
         int64_t kept = out->count;

@@ -495,6 +495,20 @@ ritz_status ritz_assemble_full(const ritz_scene *scene, const double *setting,
     return RITZ_OK;
 }
 
+ritz_status ritz_scene_near_axes(const ritz_scene *scene, const double *setting,
+                                 ritz_near_axes *out)
+{
+    RITZ_OWN(ritz_held) p = {.scene = scene};
+    bool loops = false;
+
+    RITZ_CHECK(ritz_scene_loops(scene, &loops));
+    if (!loops)
+        return RITZ_OK;
+    RITZ_CHECK(load_bodies(&p));
+    RITZ_CHECK(build_stage(&p));
+    return ritz_stage_near_axes(&p.stage, setting, out);
+}
+
 /*
  * The basis T of an assembled system. Bodies move as u_c = T_c q_c with q_c =
  * P_c x. C P = 0 holds in their ports' maps, which are rows of T_c, so that

@@ -64,8 +64,7 @@ static void normalise_vector(double x[static 3])
         x[i] /= length;
 }
 
-/* Two unit vectors normal to a unit axis and to each other. */
-static void find_normals(const double axis[static 3], double e[static 2][3])
+void ritz_joint_normals(const double axis[static 3], double e[static 2][3])
 {
     double start[3] = {0.0, 0.0, 0.0};
     int least = 0;
@@ -102,7 +101,8 @@ static void find_normals(const double axis[static 3], double e[static 2][3])
  *     bushing     I                   0         delta and phi, caged
  *     rigid       I                   offset    none
  *
- * In a loop R and d follow from the other joints (placement.c).
+ * In a loop R and d follow from the other joints (placement.c), and axes from
+ * the motion that they leave (axes.c).
  *
  * The axes of a universal joint now point along a and c = R b, as b is fixed in
  * the second body. n = a x c / |a x c| is the direction about which the joint
@@ -133,18 +133,18 @@ static void point_basic(const ritz_joint *joint, const ritz_joint_pose *pose,
 static void point_hinge(const ritz_joint *joint, const ritz_joint_pose *pose,
                         double e[6][3])
 {
-    (void)pose;
+    (void)joint;
     fill_basic(e);
-    memcpy(e[3], joint->axis[0], sizeof e[3]);
-    find_normals(e[3], e + 4);
+    memcpy(e[3], pose->axis[0], sizeof e[3]);
+    ritz_joint_normals(e[3], e + 4);
 }
 
 static void point_slider(const ritz_joint *joint, const ritz_joint_pose *pose,
                          double e[6][3])
 {
-    (void)pose;
-    memcpy(e[0], joint->axis[0], sizeof e[0]);
-    find_normals(e[0], e + 1);
+    (void)joint;
+    memcpy(e[0], pose->axis[0], sizeof e[0]);
+    ritz_joint_normals(e[0], e + 1);
     fill_basic(e + 3);
 }
 
@@ -158,11 +158,12 @@ static void make_dual(const double *a, const double *v, double *g)
 static void point_universal(const ritz_joint *joint,
                             const ritz_joint_pose *pose, double e[6][3])
 {
-    const double *a = joint->axis[0];
+    const double *a = pose->axis[0];
     double c[3], v[3];
 
+    (void)joint;
     fill_basic(e);
-    ritz_turn_apply(pose->R, joint->axis[1], c);
+    ritz_turn_apply(pose->R, pose->axis[1], c);
     ritz_cross(a, c, e[5]);
     normalise_vector(e[5]);
     ritz_cross(c, e[5], v);
@@ -545,6 +546,7 @@ void ritz_joint_pose_at(const ritz_joint *joint, const double *setting,
     double first[9], second[9];
 
     *out = (ritz_joint_pose){.R = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    memcpy(out->axis, joint->axis, sizeof out->axis);
     for (int64_t k = 0; k < joint->num_sweeps && k < 2; k++)
         s[k] = setting[joint->sweep + k];
     switch (joint->type) {

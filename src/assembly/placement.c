@@ -406,17 +406,24 @@ static ritz_status keep_places(int64_t count, const placement *body,
     return RITZ_OK;
 }
 
+ritz_status ritz_place_posed(const ritz_stage *stage,
+                             const ritz_joint_pose *pose, ritz_dense *out)
+{
+    RITZ_OWN_ARRAY placement *body = NULL;
+
+    RITZ_CHECK_NEW(body, stage->count);
+    place_bodies(stage, pose, body);
+    return keep_places(stage->count, body, out);
+}
+
 ritz_status ritz_place_stage(const ritz_stage *stage, const double *setting,
                              ritz_dense *out)
 {
-    RITZ_OWN_ARRAY placement *body = NULL;
     RITZ_OWN_ARRAY ritz_joint_pose *pose = NULL;
 
-    RITZ_CHECK_NEW(body, stage->count);
     RITZ_CHECK_NEW(pose, stage->scene->num_joints);
     RITZ_CHECK(ritz_place_joints(stage, setting, pose));
-    place_bodies(stage, pose, body);
-    return keep_places(stage->count, body, out);
+    return ritz_place_posed(stage, pose, out);
 }
 
 ritz_status ritz_place_configuration(const ritz_stage *stage,

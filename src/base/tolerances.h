@@ -72,6 +72,16 @@
 /* Gap and turn of a closed loop, over its size: a scene gives angles and
    positions with five digits or so. */
 #define RITZ_LOOP_CLOSURE 1e-4
+/* An axis in a loop that departs more than this, in rad, from where the loop can
+   move is meant to lock it. */
+#define RITZ_AXIS_NEAR 1e-2
+/* What turns of axes may leave of a loop that they release, to first order: the
+   second is a part RITZ_AXIS_NEAR and its like. */
+#define RITZ_AXIS_LEFT 0.05
+/* Two turns of axes that differ by less than this factor are equal. */
+#define RITZ_AXIS_TIE 1.01
+/* An axis that turns by less than this part of another is as good as exact. */
+#define RITZ_AXIS_SHARE 0.01
 /* The gap that products of a few rotations leave, each within eps of
    orthogonal. */
 #define RITZ_PLACEMENT_ROUNDING 1e-13

@@ -109,4 +109,39 @@ refuse "'damping' is for a caged hinge, 'j' is free" \
 refuse "unknown joint type 'ball', there is fixed, hinge, slider, universal" \
     'type: ball'
 
+# --- a second hinge beside the first, its axis off by little -------------------
+
+# beside AXIS: a and b on two hinges about z, the second about AXIS.
+beside() {
+    scene "  - {name: clock, between: [a/p, b/p], type: hinge, axis: [0, 0, 1]}
+  - {name: again, between: [a/p, b/p], type: hinge, axis: $1}
+  - {name: mount, between: [b/p, c/p], type: fixed}" >beside.yaml
+}
+
+beside '[0, 0, 1]'
+json 0 ritz-assemble beside.yaml -o beside.h5
+holds '  two hinges about one axis leave a turn, without a warning' '
+    j["warnings"] == [] and len(j["configurations"][0]["frequencies_hz"]) == 7'
+for d in 1e-10 1e-8 1e-6 9e-5; do
+    beside "[0, $d, 1]"
+    json 0 ritz-assemble beside.yaml -o beside.h5
+    holds "  so they do with an axis off by $d" "
+        len(j['configurations'][0]['frequencies_hz']) == 7
+        and len(j['warnings']) == ($d > 1e-9)
+        and all('\'again\' is taken as [0, 0, 1]' in w for w in j['warnings'])"
+    expect 0 '7 dofs' ritz-assemble beside.yaml --full -o full.h5
+    expect 0 '16 rows of rank 11' ritz-simulate beside.yaml --seconds 0.1 \
+        --step 0.01 --input torque=step --constraints index-2 -o time.h5
+done
+beside '[0, 0.001, 1]'
+json 0 ritz-assemble beside.yaml -o beside.h5
+holds '  an axis that is off by 1e-3 locks the turn, and this is said' '
+    len(j["configurations"][0]["frequencies_hz"]) == 6 and
+    "locks a motion of its loop, because it departs by 0.001 rad from [0, 0, 1]"
+    in j["warnings"][0]'
+beside '[0, 0.5, 1]'
+json 0 ritz-assemble beside.yaml -o beside.h5
+holds '  an axis of another direction is meant' '
+    j["warnings"] == [] and len(j["configurations"][0]["frequencies_hz"]) == 6'
+
 echo "1..$count"

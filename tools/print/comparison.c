@@ -692,6 +692,7 @@ ritz_status comparison_run(cli_run *run, const comparison_options *given)
     if (cli_interrupted())
         return keep_done(run, &scene, &c);
     RITZ_CHECK(report_result(run, given, &stage, &c));
+    RITZ_CHECK(axes_say(run, &stage, scene.num_configurations, scene.setting));
     if (cli_uninterruptible() && given->num_tolerances > 0)
         return keep_done(run, &scene, &c);
     return report_tolerances(run, given, &stage, &c);

@@ -474,4 +474,16 @@ void settings_unit(const ritz_sweep *sweep, const char *units,
 void settings_say(cli_run *run, const ritz_scene *scene, const char *units,
                   const double *setting);
 
+/**
+ * Warn of axes in loops that the scene gives with too few digits.
+ *
+ * @param[in] setting  @p count configurations, row by row
+ */
+ritz_status axes_say(cli_run *run, const ritz_stage *stage, int64_t count,
+                     const double *setting);
+
+/** The same of a scene whose bodies are not reduced. */
+ritz_status axes_say_full(cli_run *run, const ritz_scene *scene,
+                          const double *setting);
+
 #endif

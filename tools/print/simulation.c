@@ -324,6 +324,7 @@ static ritz_status read_scene(simulation_task *d)
     RITZ_CHECK(ritz_assemble(&d->stage, at, &d->m.system));
     d->m.kind = MODEL_SYSTEM;
     settings_say(d->run, &d->scene, d->m.system.units, d->setting);
+    RITZ_CHECK(axes_say(d->run, &d->stage, 1, d->setting));
     return spin_say(d->run, &d->stage, &d->m.system.configuration[0]);
 }
 

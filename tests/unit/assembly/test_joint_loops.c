@@ -4,8 +4,7 @@
  */
 #include "testing.h"
 
-#include "bodies.h"
-#include "scenes.h"
+#include "linkage.h"
 
 #include <ritz/assembly.h>
 #include <ritz/matrix.h>
@@ -13,46 +12,19 @@
 #include <float.h>
 #include <stdio.h>
 
-enum { MOST_BODIES = 4 };
-
 static const double pi = 3.14159265358979323846;
-
-/* Four links, each from grid 1 at its origin to grid 2 at a place. */
-typedef struct linkage {
-    int64_t count;
-    double end[MOST_BODIES][3];
-    const char *joints;
-} linkage;
 
 static ritz_status assemble(const linkage *l, const ritz_method *method,
                             const char *at, ritz_configuration *out)
 {
-    char text[3000] = "scene: linkage\ncomponents:\n";
-    size_t used = strlen(text);
     double setting[8] = {0.0};
-    ritz_component body = {0};
-    ritz_reduced part[MOST_BODIES] = {0};
     RITZ_OWN(ritz_scene) scene = {0};
     RITZ_OWN(ritz_stage) stage = {0};
 
-    for (int64_t k = 0; k < l->count; k++) {
-        const double place[2][3] = {{0.0},
-                                    {l->end[k][0], l->end[k][1], l->end[k][2]}};
-
-        used += (size_t)snprintf(text + used, sizeof text - used,
-                                 "  %c: {model: m, basis: full}\n",
-                                 (char)('A' + k));
-        assert_ok(body_chain(2, place, 1, 31 + (uint64_t)k, &body));
-        assert_ok(reduce_with(&body, method, -1, &part[k]));
-        ritz_component_free(&body);
-    }
-    snprintf(text + used, sizeof text - used, "joints:\n%s", l->joints);
-    assert_ok(ritz_scene_parse("linkage.yaml", text, &scene));
+    assert_ok(stage_of_linkage(l, method, &scene, &stage));
     assert_true(scene.num_sweeps <= 8);
     assert_ok(ritz_scene_settings(&scene, at, setting));
-    assert_ok(ritz_stage_from(&scene, part, &stage));
-    RITZ_CHECK(ritz_stage_assemble(&stage, setting, out));
-    return RITZ_OK;
+    return ritz_stage_assemble(&stage, setting, out);
 }
 
 /* Of rigid links rows say things twice; of elastic ones each says its own. */
