@@ -124,4 +124,31 @@ expect 2 '--method trapezoidal cannot be used' $run --damping 'rayleigh 10 0' \
     --switched basis.h5 --method trapezoidal
 works 'nothing is written where a run is refused' test ! -e x.h5
 
+# --- a scene -----------------------------------------------------------------
+
+. "$here/models.sh"
+data=$here/../../data
+import_spacecraft
+spacecraft scene 'inputs:' \
+    '  - {name: motor, at: rotor/bearing, component: 6, against: stator/bearing}' \
+    'outputs:' '  - {name: gyro, at: platform/scan, component: 6}'
+ritz-assemble -q scene.yaml --at clock=90 -o system.h5
+ritz-basis -q normal-modes --modes 12 system.h5 -o joined.h5
+ritz-basis -q normal-modes --modes 12 rotor.h5 -o body.h5
+scene='scene.yaml --at clock=90 --seconds 1 --step 0.001 --input motor=sine:3
+    --switch-interval 0.02 --indicator 0.999999 --share-of library'
+json 0 ritz-simulate $scene --switched modes:12 -o modes.h5
+holds '  the modes of a scene are those of its system' \
+    'j["vectors"] == 12 and j["imbalance"] < 1e-9'
+expect 1 'D couples vector 21 to others' ritz-simulate $scene \
+    --switched joined.h5 -o x.h5 # the static vector of the motor
+json 0 ritz-simulate $scene --damping 'rayleigh 1 0' --switched joined.h5 \
+    -o joined-run.h5
+holds '  a basis of the system is a library of the scene' \
+    'j["vectors"] == 21 and j["imbalance"] < 1e-9'
+expect 1 'give '"'modes'"', or a basis of the system that ritz-assemble' \
+    ritz-simulate $scene --switched body.h5 -o x.h5
+expect 1 'give --constraints or --switched, not both' \
+    ritz-simulate $scene --switched modes --constraints index-2 -o x.h5
+
 echo "1..$count"

@@ -144,6 +144,12 @@ static ritz_status take_library(simulation_task *task, const char *word)
     RITZ_REFUSE_IF(!*word, RITZ_ERR_ARGUMENT, "a library without a name");
     RITZ_CHECK(count ? take_modes(task, count, out)
                      : read_library(task->run, word, out));
+    RITZ_REFUSE_IF(task->stage.count > 0 && out->nrow != task->m.at->K.nrow,
+                   RITZ_ERR_ARGUMENT,
+                   "'%s' has %" PRId64 " rows, the joined system has %" PRId64
+                   " coordinates: give 'modes', or a basis of the system that "
+                   "ritz-assemble --at writes",
+                   word, out->nrow, task->m.at->K.nrow);
     task->num_libraries++;
     return RITZ_OK;
 }
