@@ -38,6 +38,9 @@
 /* Largest rate of a spin, rad/s: its square times any mass stays finite, and no
    structure in any units turns faster. */
 #define RITZ_SPIN_FASTEST 1e15
+/* Largest coordinate of a point of its axis, in units of length, for the same
+   reason. */
+#define RITZ_SPIN_FARTHEST 1e15
 /* A scale that would be 0 is this, so that it divides. */
 #define RITZ_LEAST_SCALE 1e-300
 

@@ -187,6 +187,10 @@ ritz_status ritz_scene_spin_part(const ritz_yaml *yaml, const yaml_node_t *node,
         return RITZ_OK;
     ritz_yaml_locate(node, &spin->line, &spin->column);
     RITZ_CHECK(ritz_yaml_mapping(yaml, node, NUM_KEYS, keys, spin, value));
+    for (int k = 0; k < 3; k++)
+        RITZ_REFUSE_AT(fabs(spin->through[k]) > RITZ_SPIN_FARTHEST, yaml,
+                       value[THROUGH], "a point at %g is beyond %g",
+                       spin->through[k], RITZ_SPIN_FARTHEST);
     RITZ_CHECK(take_rate(yaml, node, value, &spin->rate));
     spin->given = true;
     return check_plane(yaml, value[AXIS], scene);

@@ -88,6 +88,8 @@ static void bad_spins_are_refused(void **)
          "s:4:14: the axis has no length"},
         {BLADE "spin: {axis: [0, 0, 1], rate: 1e200}\n",
          "s:4:31: a rate of 1e+200 rad/s is beyond 1e+15 rad/s"},
+        {BLADE "spin: {axis: [0, 0, 1], through: [0, 1e300, 0], rate: 1}\n",
+         "s:4:34: a point at 1e+300 is beyond 1e+15"},
         {BLADE "spin: {axis: [0, 0, 1], rpm: -1e17}\n",
          "s:4:30: a rate of -1.0472e+16 rad/s is beyond 1e+15 rad/s"},
         {BLADE "spin: {axis: [0, 0, 1], rate: .nan}\n",
