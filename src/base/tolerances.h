@@ -32,8 +32,8 @@
 /* A stiffening that was made for a spin about a point is of an axis that passes
    it by this part of the size of the body: it is then wrong by about as much. */
 #define RITZ_SPIN_AWAY 1e-6
-/* A body without stiffness is rigid if the mass matrix of its rigid motion is
-   its M, to this part of the largest entry: both are sums over all grids. */
+/* A body is rigid if the mass matrix of its rigid motion is its M, to this part
+   of the largest entry: both are sums over all grids. */
 #define RITZ_SPIN_RIGID 1e-8
 /* Largest rate of a spin, rad/s: its square times any mass stays finite, and no
    structure in any units turns faster. */
