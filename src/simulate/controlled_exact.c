@@ -190,15 +190,10 @@ static ritz_status fill_exact(const ritz_motion *motion,
     const bool modal = motion->form == RITZ_FORM_MODAL;
     RITZ_OWN(ritz_dense) A = {0};
     RITZ_OWN(ritz_dense_array) Q = {.count = FORMS};
-    RITZ_OWN_ARRAY double *d = NULL;
-    ritz_step_matrix_modes modes = {modal ? motion->n : 0, motion->lambda, NULL,
-                                    s->n};
+    const ritz_step_matrix_modes modes = {modal ? motion->n : 0, motion->lambda,
+                                          &motion->D, s->n};
 
     RITZ_CHECK_NEW(Q.at, FORMS);
-    RITZ_CHECK_NEW(d, motion->n);
-    for (int64_t j = 0; modal && j < motion->n; j++)
-        d[j] = ritz_dense_col(&motion->D, j)[j];
-    modes.d = d;
     RITZ_CHECK(exact_matrix(closed, step, s, &A));
     if (count > 0)
         RITZ_CHECK(exact_forms(motion, plant, &A, s->scale, Q.at));

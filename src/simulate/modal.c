@@ -128,7 +128,8 @@ static ritz_status prepare_group(const ritz_motion *m, double h,
 {
     RITZ_OWN(ritz_dense) A = {0};
     RITZ_OWN(ritz_dense_pair) Q = {0};
-    RITZ_OWN_ARRAY double *lambda = NULL, *d = NULL;
+    RITZ_OWN(ritz_dense) D = {0};
+    RITZ_OWN_ARRAY double *lambda = NULL;
     const int64_t g = part->count, j = part->mode[0];
 
     part->scale = fmax(ritz_dense_max(&m->B), RITZ_LEAST_SCALE);
@@ -138,15 +139,13 @@ static ritz_status prepare_group(const ritz_motion *m, double h,
         return m->energies ? prepare_alone(m, h, part) : RITZ_OK;
     }
     RITZ_CHECK_NEW(lambda, g);
-    RITZ_CHECK_NEW(d, g);
-    for (int64_t i = 0; i < g; i++) {
+    RITZ_CHECK(ritz_dense_principal(&m->D, g, part->mode, &D));
+    for (int64_t i = 0; i < g; i++)
         lambda[i] = m->lambda[part->mode[i]];
-        d[i] = ritz_dense_col(&m->D, part->mode[i])[part->mode[i]];
-    }
     RITZ_CHECK(group_matrix(m, part, &A));
     if (m->energies)
         RITZ_CHECK(group_forms(m, part, &A, Q));
-    return ritz_step_matrices(&(ritz_step_matrix_modes){g, lambda, d, 2 * g},
+    return ritz_step_matrices(&(ritz_step_matrix_modes){g, lambda, &D, 2 * g},
                               &A, h, m->energies ? 2 : 0, Q, &part->E, part->W);
 }
 

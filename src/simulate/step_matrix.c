@@ -173,12 +173,71 @@ static ritz_status find_parts(const ritz_dense *A, const scales *by,
     return ritz_dense_copy(A, &c->full);
 }
 
+/* Numbers k below n with k mod 3 = part. */
+static int64_t list_third(int64_t n, int64_t part, int64_t *out)
+{
+    int64_t count = 0;
+
+    for (int64_t k = part; k < n; k += 3)
+        out[count++] = k;
+    return count;
+}
+
+/* d_i -= D_iJ D_KJ^+ D_Ki of a third of the modes. */
+static ritz_status leave_third(const ritz_dense *D, int64_t part, double *d)
+{
+    const int64_t n = D->nrow;
+    RITZ_OWN_ARRAY int64_t *J = NULL, *K = NULL;
+    RITZ_OWN_ARRAY double *s = NULL;
+    RITZ_OWN(ritz_dense) D_J = {0}, D_KJ = {0}, D_K = {0}, U = {0}, V = {0};
+    RITZ_OWN(ritz_dense) left = {0}, right = {0};
+    int64_t num_J = 0, num_K = 0;
+
+    RITZ_CHECK_NEW(J, n);
+    RITZ_CHECK_NEW(K, n);
+    num_J = list_third(n, (part + 1) % 3, J);
+    num_K = list_third(n, (part + 2) % 3, K);
+    RITZ_CHECK(ritz_dense_pick(D, num_J, J, &D_J));
+    RITZ_CHECK(ritz_dense_rows(&D_J, num_K, K, &D_KJ));
+    RITZ_CHECK(ritz_dense_rows(D, num_K, K, &D_K));
+    RITZ_CHECK(ritz_general_svd(&D_KJ, &U, &s, &V));
+    RITZ_CHECK(ritz_dense_mul(&D_J, &V, &left));
+    RITZ_CHECK(ritz_dense_mul_tn(&U, &D_K, &right));
+    for (int64_t i = part; i < n; i += 3)
+        for (int64_t t = 0; t < (num_J < num_K ? num_J : num_K); t++)
+            if (s[t] > RITZ_SUM_ROUNDING * s[0])
+                d[i] -= ritz_dense_col(&left, t)[i] *
+                        ritz_dense_col(&right, i)[t] / s[t];
+    return RITZ_OK;
+}
+
+/*
+ * What damping has of each mode alone: d of D = diag(d) + L with L of low rank,
+ * as dampers between modes make it. Then L_ii = L_iJ L_KJ^+ L_Ki for any J and
+ * K of enough modes, and if i, J and K have none in common, D and L are the
+ * same there. If D is not such a sum, d is of no use, but does no harm.
+ */
+static ritz_status find_alone(const ritz_dense *D, double *d)
+{
+    enum { FEWEST = 9 };
+
+    for (int64_t k = 0; k < D->nrow; k++)
+        d[k] = ritz_dense_col(D, k)[k];
+    for (int64_t part = 0; D->nrow >= FEWEST && part < 3; part++)
+        RITZ_CHECK(leave_third(D, part, d));
+    return RITZ_OK;
+}
+
 /* The step of each mode alone, and, with a form, what damping dissipates. */
 static ritz_status find_blocks(const ritz_step_matrix_modes *modes, double h,
                                ritz_step_matrix *E, ritz_step_matrix *W)
 {
     RITZ_OWN(ritz_dense) A = {0}, Q = {0};
+    RITZ_OWN_ARRAY double *alone = NULL;
 
+    RITZ_CHECK_NEW(alone, modes->count);
+    if (modes->count > 0)
+        RITZ_CHECK(find_alone(modes->D, alone));
     RITZ_CHECK(ritz_dense_new(2, 2, &A));
     RITZ_CHECK(ritz_dense_new(2, 2, &Q));
     E->pairs = modes->count;
@@ -189,7 +248,7 @@ static ritz_status find_blocks(const ritz_step_matrix_modes *modes, double h,
     }
     A.val[2] = 1.0;
     for (int64_t j = 0; j < modes->count; j++) {
-        const double lambda = modes->lambda[j], d = modes->d[j];
+        const double lambda = modes->lambda[j], d = alone[j];
         const ritz_oscillator o = ritz_oscillator_over(lambda, d, h);
         const double own[4] = {o.hold, -lambda * o.S, o.S, o.rate};
         RITZ_OWN(ritz_dense) X = {0}, form = {0};

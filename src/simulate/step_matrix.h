@@ -33,11 +33,12 @@ typedef struct ritz_step_matrix {
     ritz_dense full;
 } ritz_step_matrix;
 
-/* States that begin with positions and rates of modes q'' + d q' + lambda q. */
+/* States that begin with positions and rates of modes q'' + D q' + lambda q. */
 typedef struct ritz_step_matrix_modes {
     int64_t count;
-    const double *lambda, *d;
-    int64_t rows; /* of E that are wanted, the first ones */
+    const double *lambda;
+    const ritz_dense *D; /* count x count */
+    int64_t rows;        /* of E that are wanted, the first ones */
 } ritz_step_matrix_modes;
 
 /**
