@@ -56,10 +56,10 @@ double ritz_motion_form(const ritz_dense *A, const double *x)
 
     for (int64_t j = 0; j < A->ncol; j++) {
         const double *a = ritz_dense_col(A, j);
+        const int below = (int)(A->nrow - j - 1);
 
-        sum +=
-            x[j] * (a[j] * x[j] + 2.0 * ritz_motion_dot(A->nrow - j - 1,
-                                                        a + j + 1, x + j + 1));
+        sum += x[j] * (a[j] * x[j] +
+                       2.0 * cblas_ddot(below, a + j + 1, 1, x + j + 1, 1));
     }
     return sum;
 }

@@ -1,11 +1,14 @@
 /*
- * loops ORDER... - microseconds of processor time for a step of a plant with so
- * many uncoupled modes: without a controller, with one of two states by the
- * split, and with it by one exponential. That is a dense product of the order
- * of the loop, and three more for the integrals of energy. The last column is
- * exact over split. It only prints; set OMP_NUM_THREADS=1 for one thread.
+ * steps ORDER... - microseconds of processor time for a step of a reduced model
+ * with so many modes, energies included, for each kind of run: integrators with
+ * D that leaves modes uncoupled, with two dampers between all modes, and with a
+ * full D; loops with a controller of two states; a state space. The last column
+ * is the exponent of the order, fitted to the three largest. It only prints;
+ * set OMP_NUM_THREADS=1 for one thread.
  */
 #include "../unit/try.h"
+
+#include "linear/general.h"
 
 #include <ritz/controlled.h>
 
@@ -15,7 +18,13 @@
 #include <stdlib.h>
 #include <time.h>
 
-enum { STEPS = 2000, MOST_EXACT = (RITZ_LOOP_EXACT - 2) / 2 };
+enum { FIRST_STEPS = 500, MOST_ORDERS = 8 };
+
+/* Seconds that a measurement takes at least, beyond the start of a run. */
+static const double least = 0.02;
+
+/* What D couples. */
+typedef enum coupling { UNCOUPLED, DAMPERS, FULL } coupling;
 
 /* Modes of 1 to 20 Hz, driven and observed at one end. */
 typedef struct plant {
@@ -44,7 +53,25 @@ done:
     return status;
 }
 
-static ritz_status make_plant(int64_t n, plant *p)
+/* Damping between modes: two dampers on all of them, or a full matrix. */
+static void add_damping(int64_t n, coupling by, ritz_dense *D)
+{
+    uint64_t seed = 3;
+
+    for (int64_t j = 0; by != UNCOUPLED && j < n; j++)
+        for (int64_t i = 0; i <= j; i++) {
+            const double d =
+                by == DAMPERS
+                    ? 0.5 / (double)n * (1.0 + cos((double)i) * cos((double)j))
+                    : 0.1 / (double)n * ritz_general_noise(&seed);
+
+            ritz_dense_col(D, j)[i] += d;
+            if (i < j)
+                ritz_dense_col(D, i)[j] += d;
+        }
+}
+
+static ritz_status make_plant(int64_t n, coupling by, plant *p)
 {
     ritz_status status = RITZ_OK;
 
@@ -60,6 +87,7 @@ static ritz_status make_plant(int64_t n, plant *p)
         ritz_dense_col(&p->io.B, 0)[k] = 1.0;
         ritz_dense_col(&p->io.C, k)[0] = 1.0;
     }
+    add_damping(n, by, &p->D);
     p->matrices =
         (ritz_second_order){.K = &p->K, .M = &p->M, .D = &p->D, .io = &p->io};
     p->loop = (ritz_loop){1, &p->measured, 1, &p->driven, false};
@@ -85,81 +113,160 @@ static double seconds(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* Processor time of a whole run; `way` NULL: without a controller. */
-static ritz_status time_run(const plant *p, const ritz_controlled *way,
-                            int64_t steps, double *out)
+/* A kind of run. */
+typedef struct kind {
+    const char *name;
+    const ritz_integrator *integrator;
+    coupling by;
+    bool loop, exact, states;
+    double sample;
+} kind;
+
+/* Processor time of a whole run. */
+static ritz_status time_run(const plant *p, const kind *k, int64_t steps,
+                            double *out)
 {
     static const ritz_outlook seen = {0};
     static const ritz_signal push = {.kind = RITZ_SIGNAL_STEP,
                                      .amplitude = 1.0};
-    const ritz_model model = ritz_model_of_dense(&p->matrices, NULL);
+    const ritz_controlled way = {.controller = &p->controller,
+                                 .loop = &p->loop,
+                                 .exact = k->exact,
+                                 .sample = k->sample};
+    ritz_model model = ritz_model_of_dense(&p->matrices, NULL);
     ritz_simulation_request request = RITZ_SIMULATION_NONE;
     ritz_simulation s = {0};
+    ritz_state_space made = {0};
+    const ritz_state_space *space = NULL;
     ritz_status status = RITZ_OK;
-    const double began = seconds();
+    double began = 0.0;
 
+    if (k->states) {
+        RITZ_TRY(ritz_model_states(model, &made, &space));
+        model = ritz_model_of_states(space);
+    }
+    began = seconds();
+    request.integrator = k->integrator;
     request.step = 1e-3;
     request.seconds = request.step * (double)steps;
     request.every = steps;
     request.signal = &push;
-    RITZ_TRY(way ? ritz_simulate_controlled(model, &request, way, &seen, &s)
+    RITZ_TRY(k->loop
+                 ? ritz_simulate_controlled(model, &request, &way, &seen, &s)
                  : ritz_simulate(model, &request, &s));
     *out = seconds() - began;
 done:
     ritz_simulation_free(&s);
+    ritz_state_space_free(&made);
     return status;
 }
 
-/* Microseconds a step: the difference of two runs, the least of three. */
-static ritz_status time_step(const plant *p, const ritz_controlled *way,
-                             double *out)
+static ritz_status least_of(const plant *p, const kind *k, int64_t steps,
+                            double *out)
 {
-    ritz_status status = RITZ_OK;
+    double now = 0.0;
 
     *out = HUGE_VAL;
-    for (int k = 0; k < 3; k++) {
-        double one = 0.0, two = 0.0;
+    for (int run = 0; run < 5; run++) {
+        const ritz_status status = time_run(p, k, steps, &now);
 
-        RITZ_TRY(time_run(p, way, STEPS, &one));
-        RITZ_TRY(time_run(p, way, 3 * STEPS, &two));
-        *out = fmin(*out, 1e6 * (two - one) / (2 * STEPS));
+        if (status != RITZ_OK)
+            return status;
+        *out = fmin(*out, now);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
-static ritz_status measure(int64_t n)
+/* Microseconds a step: the difference of a long and a short run. */
+static ritz_status time_step(int64_t n, const kind *k, double *out)
 {
     ritz_status status = RITZ_OK;
     plant p = {0};
-    ritz_controlled way = {.controller = &p.controller, .loop = &p.loop};
-    double open = 0.0, split = 0.0, exact = nan("");
+    double begun = 0.0, all = 0.0;
+    int64_t steps = FIRST_STEPS;
 
-    RITZ_TRY(make_plant(n, &p));
-    RITZ_TRY(time_step(&p, NULL, &open));
-    RITZ_TRY(time_step(&p, &way, &split));
-    way.exact = true;
-    if (n <= MOST_EXACT)
-        RITZ_TRY(time_step(&p, &way, &exact));
-    if (isnan(exact))
-        printf("%8" PRId64 " %10.3f %10.3f %10s %8s\n", n, open, split, "-",
-               "-");
-    else
-        printf("%8" PRId64 " %10.3f %10.3f %10.3f %8.1f\n", n, open, split,
-               exact, exact / split);
-    fflush(stdout);
+    RITZ_TRY(make_plant(n, k->by, &p));
+    RITZ_TRY(least_of(&p, k, 1, &begun));
+    do {
+        steps *= 2;
+        RITZ_TRY(least_of(&p, k, steps, &all));
+    } while (all - begun < fmax(least, 0.5 * begun));
+    *out = 1e6 * (all - begun) / (double)(steps - 1);
 done:
     free_plant(&p);
     return status;
 }
 
+/* Slope of ln t over ln n of the last three. */
+static double find_exponent(int count, const int64_t *order, const double *t)
+{
+    const int first = count > 3 ? count - 3 : 0;
+    double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
+
+    for (int k = first; k < count; k++) {
+        const double u = log((double)order[k]), v = log(t[k]);
+
+        x += u;
+        y += v;
+        xx += u * u;
+        xy += u * v;
+    }
+    return (xy - x * y / (count - first)) / (xx - x * x / (count - first));
+}
+
+static ritz_status measure(const kind *k, int count, const int64_t *order)
+{
+    double t[MOST_ORDERS];
+
+    printf("%-34s", k->name);
+    for (int j = 0; j < count; j++) {
+        const ritz_status status = time_step(order[j], k, &t[j]);
+
+        if (status != RITZ_OK)
+            return status;
+        printf(" %8.3f", t[j]);
+        fflush(stdout);
+    }
+    printf(" %8.2f\n", find_exponent(count, order, t));
+    return RITZ_OK;
+}
+
+static const kind kinds[] = {
+    {"modal", &ritz_integrator_modal, .by = UNCOUPLED},
+    {"modal, two dampers", &ritz_integrator_modal, .by = DAMPERS},
+    {"modal, full D", &ritz_integrator_modal, .by = FULL},
+    {"trapezoidal", &ritz_integrator_trapezoidal, .by = UNCOUPLED},
+    {"trapezoidal, full D", &ritz_integrator_trapezoidal, .by = FULL},
+    {"generalised-alpha", &ritz_integrator_generalised_alpha, .by = UNCOUPLED},
+    {"generalised-alpha, full D", &ritz_integrator_generalised_alpha,
+     .by = FULL},
+    {"central-difference", &ritz_integrator_central_difference,
+     .by = UNCOUPLED},
+    {"central-difference, full D", &ritz_integrator_central_difference,
+     .by = FULL},
+    {"loop, split", &ritz_integrator_modal, .loop = true},
+    {"loop, sampled each 10 steps", &ritz_integrator_modal, .loop = true,
+     .sample = 0.01},
+    {"loop, exact", &ritz_integrator_modal, .loop = true, .exact = true},
+    {"loop, exact, full D", &ritz_integrator_modal, .by = FULL, .loop = true,
+     .exact = true},
+    {"state space of 2 r states", &ritz_integrator_modal, .states = true},
+};
+
 int main(int argc, char **argv)
 {
-    printf("%8s %10s %10s %10s %8s\n", "modes", "open", "split", "exact",
-           "ratio");
-    for (int k = 1; k < argc; k++)
-        if (measure(strtoll(argv[k], NULL, 10)) != RITZ_OK) {
-            fprintf(stderr, "loops: %s\n", ritz_error_message());
+    int64_t order[MOST_ORDERS];
+    const int count = argc - 1 < MOST_ORDERS ? argc - 1 : MOST_ORDERS;
+
+    printf("%-34s", "microseconds a step, modes:");
+    for (int k = 0; k < count; k++) {
+        order[k] = strtoll(argv[k + 1], NULL, 10);
+        printf(" %8" PRId64, order[k]);
+    }
+    printf(" %8s\n", "exponent");
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
+        if (measure(&kinds[k], count, order) != RITZ_OK) {
+            fprintf(stderr, "steps: %s\n", ritz_error_message());
             return 1;
         }
     return 0;
