@@ -4,21 +4,21 @@
  *
  *     KG phi = theta K phi,
  *
- * and the factors nearest to 0 are those of the largest |theta|: one of them is
- * at an end of the spectrum, found by Lanczos iterations with a factor of K.
- * With a factor of K + s KG, which is definite as long as s is between the
- * factors of both signs, theta = -1 / (mu - s), so that the first factor beyond
- * s is at an end as well.
+ * and the factors nearest to 0 of both signs are at the ends of the spectrum,
+ * where ARPACK finds them with a factor of K. An end that is far smaller than
+ * the other does not converge: with a factor of K + s KG, which is definite as
+ * long as s is between the factors of both signs, theta = -1 / (mu - s), so that
+ * the first factor beyond s is far from the others.
  *
  * By Sylvester's law of inertia K + s KG has as many negative eigenvalues as
  * there are factors between 0 and s. Counts prove that no factor is missing, and
- * say how far s may go. [GrimesLewisSimon1994]
+ * say how far s may go. [GrimesLewisSimon1994] [LehoucqSorensenYang1998]
  */
 #include "check/buckling.h"
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "linear/extreme.h"
+#include "linear/arpack.h"
 #include "linear/general.h"
 #include "linear/inertia.h"
 #include "linear/trial.h"
@@ -91,54 +91,85 @@ ritz_status ritz_buckling_dense(const ritz_dense *K, const ritz_dense *KG,
 
 /* ---- sparse ------------------------------------------------------------- */
 
+/* A load whose factors are looked for in one direction, +1 or -1. */
+typedef struct directed {
+    const ritz_sparse *K, *KG;
+    double sign;
+} directed;
+
 /* How many factors are between 0 and s. */
-static ritz_status count_factors(const ritz_sparse *K, const ritz_sparse *KG,
-                                 double s, int64_t *out)
+static ritz_status count_factors(const directed *to, double s, int64_t *out)
 {
     RITZ_OWN(ritz_sparse) A = {0};
 
-    RITZ_CHECK(ritz_sparse_add(1.0, K, s, KG, &A));
+    RITZ_CHECK(ritz_sparse_add(1.0, to->K, to->sign * s, to->KG, &A));
     return ritz_inertia_negative(&A, NULL, out);
 }
 
-/* The factor next to @p s in the direction of @p sign. K + s KG is definite. */
-static ritz_status find_beyond(const ritz_sparse *K, const ritz_sparse *KG,
-                               double s, double sign, double *mu)
+/* No factor is nearer to 0 than @p s. */
+static ritz_status prove_none(const directed *to, double s)
+{
+    int64_t count = 0;
+
+    RITZ_CHECK(count_factors(to, s * (1.0 - RITZ_BUCKLING_BELOW), &count));
+    RITZ_REFUSE_IF(count > 0, RITZ_ERR_CONVERGENCE,
+                   "a buckling factor below %g was missed", s);
+    return RITZ_OK;
+}
+
+/* The factor next to @p s. K + s KG is definite. */
+static ritz_status find_beyond(const directed *to, double s, double *mu)
 {
     RITZ_OWN(ritz_sparse) A = {0};
     RITZ_OWN(ritz_factor) *F = NULL;
     double theta = 0.0;
 
-    RITZ_CHECK(ritz_sparse_add(1.0, K, s, KG, &A));
+    RITZ_CHECK(ritz_sparse_add(1.0, to->K, to->sign * s, to->KG, &A));
     RITZ_CHECK(ritz_factor_spd(&A, &F));
-    RITZ_CHECK(ritz_extreme_value(
-        KG, &A, F, sign > 0.0 ? RITZ_END_LOWEST : RITZ_END_HIGHEST, &theta));
-    *mu = s - 1.0 / theta;
+    RITZ_CHECK(ritz_lanczos_end_of(
+        &(ritz_ended){to->KG, &A, F},
+        to->sign > 0.0 ? RITZ_END_LOWEST : RITZ_END_HIGHEST, &theta));
+    *mu = to->sign * s - 1.0 / theta;
     return RITZ_OK;
 }
 
 /*
- * The factor of one sign nearest to 0, up to RITZ_BUCKLING_REACH times @p scale,
- * below which there is none; NaN if there is none.
+ * The factor nearest to 0 between @p from, below which there is none, and
+ * RITZ_BUCKLING_REACH times as much; NaN if there is none.
  */
-static ritz_status find_factor(const ritz_sparse *K, const ritz_sparse *KG,
-                               double scale, double sign, double *mu)
+static ritz_status search_factor(const directed *to, double from, double *mu)
 {
-    double from = scale * (1.0 - RITZ_BUCKLING_BELOW);
-    double to = scale * RITZ_BUCKLING_REACH;
+    const double end = from * RITZ_BUCKLING_REACH;
     int64_t count = 0;
 
     *mu = nan("");
-    RITZ_CHECK(count_factors(K, KG, sign * to, &count));
+    RITZ_CHECK(count_factors(to, end, &count));
     if (count == 0)
         return RITZ_OK;
-    for (count = 0; from * FARTHER < to;) {
-        RITZ_CHECK(count_factors(K, KG, sign * from * FARTHER, &count));
+    RITZ_CHECK(prove_none(to, from));
+    from *= 1.0 - RITZ_BUCKLING_BELOW;
+    for (count = 0; from * FARTHER < end;) {
+        RITZ_CHECK(count_factors(to, from * FARTHER, &count));
         if (count > 0)
             break;
         from *= FARTHER;
     }
-    return find_beyond(K, KG, sign * from, sign, mu);
+    return find_beyond(to, from, mu);
+}
+
+/*
+ * The factor of one direction, or NaN.
+ *
+ * @param[in] theta  the end of the spectrum there, or NaN
+ * @param[in] scale  the smallest |mu| found
+ */
+static ritz_status find_factor(const directed *to, double theta, double scale,
+                               double *mu)
+{
+    if (!(-to->sign * theta * scale * RITZ_BUCKLING_REACH >= 1.0))
+        return search_factor(to, scale, mu);
+    *mu = -1.0 / theta;
+    return prove_none(to, fabs(*mu));
 }
 
 static ritz_status solve_small(const ritz_sparse *K, const ritz_sparse *KG,
@@ -149,20 +180,6 @@ static ritz_status solve_small(const ritz_sparse *K, const ritz_sparse *KG,
     RITZ_CHECK(ritz_sparse_dense(K, &dense_K));
     RITZ_CHECK(ritz_sparse_dense(KG, &dense_KG));
     return ritz_buckling_dense(&dense_K, &dense_KG, out);
-}
-
-/* No factor is nearer to 0 than @p scale, in either direction. */
-static ritz_status prove_scale(const ritz_sparse *K, const ritz_sparse *KG,
-                               double scale)
-{
-    const double below = scale * (1.0 - RITZ_BUCKLING_BELOW);
-    int64_t count[2] = {0, 0};
-
-    RITZ_CHECK(count_factors(K, KG, below, &count[0]));
-    RITZ_CHECK(count_factors(K, KG, -below, &count[1]));
-    RITZ_REFUSE_IF(count[0] + count[1] > 0, RITZ_ERR_CONVERGENCE,
-                   "a buckling factor below %g was missed", scale);
-    return RITZ_OK;
 }
 
 ritz_status ritz_buckling_sparse(const ritz_sparse *K, const ritz_sparse *KG,
@@ -176,19 +193,19 @@ ritz_status ritz_buckling_sparse(const ritz_sparse *K, const ritz_sparse *KG,
 ritz_status ritz_buckling_iterated(const ritz_sparse *K, const ritz_sparse *KG,
                                    ritz_buckling *out)
 {
+    const directed push = {K, KG, 1.0}, pull = {K, KG, -1.0};
     RITZ_OWN(ritz_factor) *F = NULL;
-    double theta = 0.0, scale = 0.0;
+    double theta[2] = {0.0, 0.0}, scale = 0.0;
 
     *out = (ritz_buckling){nan(""), nan("")};
     RITZ_CHECK(ritz_factor_spd(K, &F));
-    RITZ_CHECK(ritz_extreme_value(KG, K, F, RITZ_END_LARGEST, &theta));
+    RITZ_CHECK(ritz_lanczos_ends(&(ritz_ended){KG, K, F}, theta));
     ritz_factor_free(&F);
-    if (theta == 0.0)
+    scale = 1.0 / fmax(fabs(theta[0]), fabs(theta[1])); /* of NaN, the other */
+    if (isinf(scale))
         return RITZ_OK;
-    scale = 1.0 / fabs(theta);
-    RITZ_CHECK(prove_scale(K, KG, scale));
-    RITZ_CHECK(find_factor(K, KG, scale, 1.0, &out->factor));
-    return find_factor(K, KG, scale, -1.0, &out->reversed);
+    RITZ_CHECK(find_factor(&push, theta[0], scale, &out->factor));
+    return find_factor(&pull, theta[1], scale, &out->reversed);
 }
 
 /* ---- models ------------------------------------------------------------- */

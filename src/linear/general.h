@@ -136,15 +136,6 @@ typedef enum ritz_lanczos_end {
 } ritz_lanczos_end;
 
 /**
- * Vectors of the @p k eigenvalues nearest above sigma, by ARPACK.
- *
- * @param[out] X     n x k, in no order; empty unless FOUND
- * @param[out] reach the k-th eigenvalue, or an estimate of it if SLOW
- */
-ritz_status ritz_lanczos_lowest(const ritz_shifted *S, int64_t k, ritz_dense *X,
-                                double *reach, ritz_lanczos_end *end);
-
-/**
  * Singular values of A, min(m, n) of them, descending; A is lost.
  *
  * @return RITZ_ERR_CONVERGENCE

@@ -19,6 +19,7 @@
 #include "base/memory.h"
 #include "base/tolerances.h"
 #include "linear/amls.h"
+#include "linear/arpack.h"
 #include "linear/block_lanczos.h"
 #include "linear/density.h"
 #include "linear/engine_choice.h"

@@ -1,14 +1,15 @@
 /*
  * Buckling of columns against closed forms; factors of both signs against an
  * independent program that uses LAPACK; reduced models against full ones;
- * Lanczos iterations against LAPACK; loads that act.
+ * ARPACK against LAPACK, and against plates in closed form; loads that act.
  */
 #include "testing.h"
 
 #include "check/buckling.h"
 #include "column.h"
-#include "linear/extreme.h"
+#include "linear/arpack.h"
 #include "masses.h"
+#include "plate.h"
 
 #include <ritz/basis.h>
 #include <ritz/check.h>
@@ -117,18 +118,19 @@ static void a_load_of_rank_one_has_one_factor(void **state)
     const int64_t at[] = {5};
     const double value[] = {-2.0};
     RITZ_OWN(ritz_dense) e = {0};
-    double theta = 0.0;
+    double theta[2] = {0.0, 0.0};
 
     (void)state;
     assert_ok(column_component(12, COLUMN_CLAMPED_FREE, &c));
     assert_ok(ritz_sparse_from_triplets(c.num_dofs, c.num_dofs, 1, at, at,
                                         value, &KG));
     assert_ok(ritz_factor_spd(&c.K, &F));
-    assert_ok(ritz_extreme_value(&KG, &c.K, F, RITZ_END_LARGEST, &theta));
+    assert_ok(ritz_lanczos_ends(&(ritz_ended){&KG, &c.K, F}, theta));
     assert_ok(ritz_dense_new(c.num_dofs, 1, &e));
     e.val[5] = 1.0;
     assert_ok(ritz_factor_solve(F, &e));
-    assert_near(theta / (-2.0 * e.val[5]), 1.0, 1e-9);
+    assert_near(theta[0] / (-2.0 * e.val[5]), 1.0, 1e-9);
+    assert_true(isnan(theta[1]) || fabs(theta[1]) < 1e-9 * fabs(theta[0]));
 }
 
 static void nothing_buckles_without_geometric_stiffness(void **state)
@@ -137,7 +139,7 @@ static void nothing_buckles_without_geometric_stiffness(void **state)
     RITZ_OWN(ritz_sparse) KG = {0};
     RITZ_OWN(ritz_factor) *F = NULL;
     ritz_buckling found = {0};
-    double theta = 1.0;
+    double theta[2] = {1.0, 1.0};
 
     (void)state;
     assert_ok(column_component(12, COLUMN_CLAMPED_FREE, &c));
@@ -145,8 +147,11 @@ static void nothing_buckles_without_geometric_stiffness(void **state)
     assert_ok(ritz_buckling_sparse(&c.K, &KG, &found));
     assert_true(isnan(found.factor) && isnan(found.reversed));
     assert_ok(ritz_factor_spd(&c.K, &F));
-    assert_ok(ritz_extreme_value(&KG, &c.K, F, RITZ_END_LOWEST, &theta));
-    assert_true(theta == 0.0);
+    assert_ok(ritz_lanczos_ends(&(ritz_ended){&KG, &c.K, F}, theta));
+    assert_true(theta[0] == 0.0 && theta[1] == 0.0);
+    assert_ok(ritz_lanczos_end_of(&(ritz_ended){&KG, &c.K, F}, RITZ_END_LOWEST,
+                                  &theta[0]));
+    assert_true(theta[0] == 0.0);
 }
 
 static void
@@ -189,18 +194,103 @@ static void a_free_body_has_no_factor(void **state)
     assert_non_null(strstr(find(&audit, "buckling")->says, "a motion is free"));
 }
 
-/* With 320 elements the eigenvalues of bending span 1e11 or more. */
-static void factors_that_cannot_be_computed_give_a_warning(void **state)
+/* Entries of K are 1e10 times its lowest eigenvalue: of a column of 640
+   elements four digits of the factor may be wrong. */
+static void factors_that_rounding_takes_digits_of_give_a_warning(void **state)
 {
     RITZ_OWN(ritz_component) c = {0};
     RITZ_OWN(ritz_audit) audit = {0};
 
     (void)state;
-    assert_ok(column_component(320, COLUMN_CLAMPED_FREE, &c));
+    assert_ok(column_component(640, COLUMN_CLAMPED_FREE, &c));
     assert_ok(ritz_audit_component(&c, &audit));
     assert_int_equal(find(&audit, "buckling:tip")->verdict, RITZ_WARN);
-    assert_non_null(
-        strstr(find(&audit, "buckling:tip")->says, "not computed: "));
+    assert_non_null(strstr(find(&audit, "buckling:tip")->says,
+                           "not computed: rounding of a stiffness that is "
+                           "nearly singular may change it by "));
+}
+
+static void a_fine_column_buckles_at_its_closed_form(void **state)
+{
+    RITZ_OWN(ritz_component) c = {0};
+    ritz_buckling found = {0};
+
+    (void)state;
+    assert_ok(column_component(320, COLUMN_CLAMPED_FREE, &c));
+    assert_ok(ritz_buckling_iterated(&c.K, &c.load[COLUMN_TIP].KG, &found));
+    /* measured: 1.3e-7, as entries of K are 1e8 times its lowest eigenvalue */
+    assert_near(found.factor / (PI * PI / 4.0), 1.0, 1e-6);
+    assert_true(isnan(found.reversed));
+}
+
+static void same_factor(double found, double exact)
+{
+    assert_int_equal(isnan(found), isnan(exact));
+    /* eps times the largest entry of K over the eigenvalue of the mode, 1e6 */
+    if (!isnan(exact))
+        assert_near(found / exact, 1.0, 1e-9);
+}
+
+/* A factor so far from the other is not given. */
+static void leave_out_far(ritz_buckling *b)
+{
+    const double most = 1e3 * fmin(fabs(b->factor), fabs(b->reversed));
+
+    if (fabs(b->factor) > most)
+        b->factor = (double)NAN;
+    if (fabs(b->reversed) > most)
+        b->reversed = (double)NAN;
+}
+
+/* Ends of one sign, of both, of 100 times the size of the other, so that
+   K + s KG is factored, and of 1000 times. */
+static void factors_of_a_plate_are_those_of_its_closed_form(void **state)
+{
+    static const double load[][2] = {{1.0, 0.0},   {-1.0, 0.0}, {1.0, -0.1},
+                                     {-0.1, 1.0},  {-1.0, 0.9}, {1.0, 1.0},
+                                     {1.0, -0.02}, {-1.0, 0.02}};
+
+    (void)state;
+    for (size_t k = 0; k < sizeof load / sizeof *load; k++) {
+        RITZ_OWN(ritz_sparse) K = {0}, KG = {0};
+        ritz_buckling found = {0}, exact = {0};
+
+        assert_ok(plate_matrices(26, load[k][0], load[k][1], &K, &KG));
+        plate_factors(26, load[k][0], load[k][1], &exact);
+        leave_out_far(&exact);
+        assert_ok(ritz_buckling_sparse(&K, &KG, &found));
+        same_factor(found.factor, exact.factor);
+        same_factor(found.reversed, exact.reversed);
+    }
+}
+
+/* Both ends are of the same size. */
+static void a_sheared_plate_has_the_same_factor_in_both_directions(void **state)
+{
+    RITZ_OWN(ritz_sparse) K = {0}, KG = {0}, none = {0};
+    ritz_buckling found = {0};
+
+    (void)state;
+    assert_ok(plate_matrices(26, 1.0, 0.0, &K, &none));
+    assert_ok(plate_shear(26, &KG));
+    assert_ok(ritz_buckling_sparse(&K, &KG, &found));
+    same_factor(found.factor, -found.reversed);
+    /* of an infinitely fine one 9.35 pi^2 (9.34 in [TimoshenkoGere1961]) */
+    assert_near(found.factor / (9.34 * PI * PI), 1.0, 0.01);
+}
+
+/* KG of 1e-18 of the usual units: ARPACK would take theta for zero. */
+static void the_unit_of_a_load_does_not_matter(void **state)
+{
+    RITZ_OWN(ritz_sparse) K = {0}, KG = {0};
+    ritz_buckling found = {0}, exact = {0};
+
+    (void)state;
+    assert_ok(plate_matrices(26, 1e-18, -1e-19, &K, &KG));
+    plate_factors(26, 1.0, -0.1, &exact);
+    assert_ok(ritz_buckling_sparse(&K, &KG, &found));
+    same_factor(1e-18 * found.factor, exact.factor);
+    same_factor(1e-18 * found.reversed, exact.reversed);
 }
 
 static void expect_verdict(const ritz_component *c, double amount,
@@ -313,7 +403,11 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(
         a_reduced_model_buckles_later_and_nearly_where_the_full_one_does),
     cmocka_unit_test(a_free_body_has_no_factor),
-    cmocka_unit_test(factors_that_cannot_be_computed_give_a_warning),
+    cmocka_unit_test(factors_that_rounding_takes_digits_of_give_a_warning),
+    cmocka_unit_test(a_fine_column_buckles_at_its_closed_form),
+    cmocka_unit_test(factors_of_a_plate_are_those_of_its_closed_form),
+    cmocka_unit_test(a_sheared_plate_has_the_same_factor_in_both_directions),
+    cmocka_unit_test(the_unit_of_a_load_does_not_matter),
     cmocka_unit_test(a_load_above_half_of_its_buckling_load_warns),
     cmocka_unit_test(loads_that_act_are_added),
     cmocka_unit_test(a_load_that_is_not_there_is_refused),
