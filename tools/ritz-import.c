@@ -39,6 +39,8 @@ int main(int argc, char **argv)
                  "structural damping K4, of K + i K4"),
         CLI_LIST("geometric-stiffness", &given.load, "F@LOAD",
                  "K_g for a unit of LOAD, tension positive"),
+        CLI_LIST("preload", &given.preload, "LOAD=X",
+                 "K + X K_g is the stiffness: X times LOAD acts [none]"),
         CLI_TEXT("superelement", &given.superelement, "F.op4",
                  "all of these of NASTRAN's EXTSEOUT, rows by F.pch or F.asm"),
         CLI_TEXT("bulk", &it->bulk, "F",

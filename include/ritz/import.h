@@ -291,8 +291,10 @@ typedef struct ritz_import_request {
     const char *stiffness, *mass, *damping, *structural_damping;
     int64_t num_loads;
     const char *const *load; /* "F@LOAD" */
-    const char *bulk;        /* file of a deck */
-    const char *dofs;        /* file of `GRID COMP` rows, or `NODE.COMP` ones */
+    int64_t num_preloads;
+    const char *const *preload; /* "LOAD=X": K becomes K + X KG */
+    const char *bulk;           /* file of a deck */
+    const char *dofs; /* file of `GRID COMP` rows, or `NODE.COMP` ones */
     const char *rows; /* directions of every grid, "126"; "0": scalar points */
     const char *frequencies; /* of a component in modal form: file of its
                                 natural frequencies  [Hz] */

@@ -542,6 +542,7 @@ ritz_status ritz_import(const ritz_import_request *request, ritz_component *out,
     RITZ_CHECK(
         ritz_import_attach(request, &deck, &done_what, &files, &component));
     RITZ_CHECK(ritz_component_settle(&component, request->symmetrise));
+    RITZ_CHECK(ritz_import_preload(request, &component));
     RITZ_MOVE(*out, component);
     RITZ_MOVE(*report, done_what);
     return RITZ_OK;

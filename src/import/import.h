@@ -310,6 +310,14 @@ ritz_status ritz_import_attach(const ritz_import_request *request,
 ritz_status ritz_import_port(const char *text, bool whole,
                              const ritz_extended *extended, ritz_port *out);
 
+/**
+ * Add loads that act to the stiffness of a component whose matrices are settled.
+ *
+ * @return RITZ_ERR_ARGUMENT if there is no geometric stiffness of a load
+ */
+ritz_status ritz_import_preload(const ritz_import_request *request,
+                                ritz_component *component);
+
 /** A label, in which '/' divides: "N/mm". @return RITZ_ERR_ARGUMENT */
 ritz_status ritz_import_units(const char *text, char out[RITZ_NAME_SIZE]);
 

@@ -26,6 +26,52 @@ expect 1 'buckling-applied' ritz-check column.h5 --load tip=2.5
 expect 0 'stiffen it' ritz-check column.h5 --load spin_zz=5
 expect 0 '' ritz-check -q column.h5 --load tip=2.5 --load spin_zz=9
 
+# --- a load that always acts --------------------------------------------------
+
+# A cantilever under a push P = k^2 at its end bends by (tan k - k) / (P k) under
+# a unit force across it [TimoshenkoGere1961].
+expect 0 'the stiffness is that under load tip=1.5' ritz-import \
+    --stiffness K.mtx --mass M.mtx --dofs dofs --bulk column.bdf \
+    --geometric-stiffness tip.mtx@tip --input push=13:2 --output-at see=13:2 \
+    --preload tip=1.5 -o pressed.h5
+json 0 ritz-check pressed.h5
+holds '  it buckles under what is left to the buckling load' '
+    abs([c["value"] for c in j["checks"] if c["name"] == "buckling:tip"][0]
+        - 0.9674021) < 5e-8'
+works 'its response' ritz-frf -q pressed.h5 --from-hz 1e-6 --to-hz 1e-5 \
+    --points 2 --no-refine --damping 'modal 0.01' -o response.h5
+works 'its states, balanced' ritz-basis -q balanced --modes 12 \
+    --damping 'modal 0.01' pressed.h5 -o balanced.h5
+expect 0 'geometric stiffness of 1 load is left out' ritz-reduce pressed.h5 \
+    balanced.h5 -o states.h5
+works '  and their response' ritz-frf -q states.h5 --from-hz 1e-6 --to-hz 1e-5 \
+    --points 2 --no-refine -o of-states.h5
+works 'its run in time' ritz-simulate -q pressed.h5 --up-to-hz 1e6 \
+    --input push=step --damping 'modal 0.7' --seconds 60 --step 0.1 -o run.h5
+works '  all bend as a column that is pushed' /usr/bin/python3 -s - <<'END'
+import math
+import h5py
+k = math.sqrt(1.5)
+exact = (math.tan(k) - k) / (k * k * k)
+found = [h5py.File(f"{name}.h5")["H/real"][0].ravel()[0]
+         for name in ("response", "of-states")]
+found.append(h5py.File("run.h5")["y"][-1, 0])
+# twelve Hermite elements err by 1e-6; balanced states by their bound
+assert all(abs(x / exact - 1) < tolerance
+           for x, tolerance in zip(found, (3e-6, 1e-4, 3e-6))), (found, exact)
+END
+for wrong in wind=1 tip tip=nan; do
+    expect 1 'ritz-import: --preload: ' import_column --preload $wrong -o no.h5
+done
+expect 1 "load 'tip' is given twice" import_column --preload tip=1 \
+    --preload tip=2 -o no.h5
+expect 1 'needs the geometric stiffness' ritz-import --stiffness K.mtx \
+    --mass M.mtx --dofs dofs --preload tip=1 -o no.h5
+expect 0 '' import_column --preload tip=2.5 -o buckled.h5
+expect 1 'stiffness-definite' ritz-check buckled.h5
+
+# --- a reduced column ----------------------------------------------------------
+
 ritz-basis -q craig-bampton --modes 6 column.h5 -o basis.h5
 expect 0 '' ritz-reduce -q column.h5 basis.h5 -o small.h5
 json 0 ritz-check small.h5

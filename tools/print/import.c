@@ -160,8 +160,8 @@ static void say_import(cli_run *run, const ritz_component *component,
                 "freely",
                 done->num_floating);
     if (component->num_loads > 0)
-        cli_say(run, "geometric stiffness of %ld loads is stored",
-                component->num_loads);
+        cli_say(run, "geometric stiffness of %ld load%s is stored",
+                component->num_loads, component->num_loads > 1 ? "s" : "");
     if (component->elements.count + done->num_hidden > 0)
         cli_say(run,
                 "%ld elements for pictures; %ld left out, as not all of "
@@ -180,6 +180,8 @@ static void take_lists(import_options *lists)
 
     request->num_loads = lists->load.count;
     request->load = lists->load.text;
+    request->num_preloads = lists->preload.count;
+    request->preload = lists->preload.text;
     request->num_ports = lists->port.count;
     request->port = lists->port.text;
     request->num_rigid_ports = lists->rigid.count;
@@ -291,6 +293,9 @@ static ritz_status import_component(cli_run *run, import_options *given)
     take_sums(run, &sums);
     RITZ_CHECK(describe_output(run, &made));
     say_import(run, &made.component, &done);
+    for (int64_t k = 0; k < request->num_preloads; k++)
+        cli_say(run, "the stiffness is that under load %s",
+                request->preload[k]);
     if (given->superelement)
         say_others(run, &found);
     return RITZ_OK;

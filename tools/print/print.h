@@ -192,7 +192,7 @@ ritz_status responses_run(cli_run *run, const response_options *given);
 
 /* Lists of the command line are taken into the request. */
 typedef struct import_options {
-    cli_list load, port, rigid, averaged, input, output, damper;
+    cli_list load, preload, port, rigid, averaged, input, output, damper;
     const char *superelement; /* file from which matrices are requested */
     cli_list recovery, recovery_rows;
     ritz_import_request request;

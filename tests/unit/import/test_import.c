@@ -527,13 +527,15 @@ static void no_allocation_failure_leaks(void **)
     const char *const outputs[] = {"y=7:1,5:0*-1/acc"};
     const char *const dampers[] = {"d=7:1,3:2*5*-6"};
     char load[300];
-    const char *const loads[] = {load};
+    const char *const loads[] = {load}, *const preloads[] = {"spin=2"};
     const ritz_import_request request = {
         .stiffness = put_diagonal("k.mtx", 19, full),
         .mass = put_diagonal("m.mtx", 19, full),
         .bulk = folder_write("deck.bdf", deck),
         .num_loads = 1,
         .load = loads,
+        .num_preloads = 1,
+        .preload = preloads,
         .num_ports = 2,
         .port = ports,
         .num_inputs = 1,
