@@ -11,6 +11,8 @@
 
 #include <string.h>
 
+static const char mass[] = ".m.mtx";
+
 enum { NODE = 3, SIDE = 2 * NODE, LEFT = 1, RIGHT = 2 };
 
 typedef struct beam {
@@ -128,6 +130,22 @@ static void fill_matrices(const beam *b, double K[SIDE][SIDE],
         }
 }
 
+/* Geometric stiffness of an element under a tension of one. */
+static void fill_tension(const beam *b, double G[SIDE][SIDE])
+{
+    static const int bend[4] = {1, 2, 4, 5};
+    const double l = b->length / (double)b->elements;
+    const double g[4][4] = {{36, 3 * l, -36, 3 * l},
+                            {3 * l, 4 * l * l, -3 * l, -l * l},
+                            {-36, -3 * l, 36, -3 * l},
+                            {3 * l, -l * l, -3 * l, 4 * l * l}};
+
+    memset(G, 0, sizeof(double[SIDE][SIDE]));
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j < 4; j++)
+            G[bend[i]][bend[j]] = g[i][j] / (30.0 * l);
+}
+
 /* Number of a dof among those that stay, -1 if it is held. */
 static int64_t row_of(const beam *b, int64_t dof)
 {
@@ -199,9 +217,10 @@ ritz_status claims_save(const claims_state *state, const char *name,
     return ritz_context(cli_table_write(table, path), path);
 }
 
-/* K or M as Matrix Market. */
+/* A matrix as Matrix Market; that of the mass has the body at the end. */
 static ritz_status put_matrix(const claims_state *state, const char *name,
-                              bool mass, const beam *b, double A[SIDE][SIDE])
+                              const char *ending, const beam *b,
+                              double A[SIDE][SIDE])
 {
     const int64_t dofs = NODE * (b->elements + 1);
     RITZ_OWN_ARRAY double *val = NULL;
@@ -211,14 +230,14 @@ static ritz_status put_matrix(const claims_state *state, const char *name,
     RITZ_CHECK_NEW(val, SIDE * dofs);
     RITZ_CHECK(cli_table_new(&table));
     add_elements(b, A, val);
-    if (mass)
+    if (strcmp(ending, mass) == 0)
         add_tip(b, val);
     for (int64_t i = 0; i < dofs; i++)
         n += row_of(b, i) >= 0;
     fprintf(table.file, "%%%%MatrixMarket matrix coordinate real symmetric\n");
     fprintf(table.file, "%ld %ld %ld\n", n, n, put_entries(b, val, NULL));
     put_entries(b, val, table.file);
-    return claims_save(state, name, mass ? ".m.mtx" : ".k.mtx", &table);
+    return claims_save(state, name, ending, &table);
 }
 
 /* GRID cards, and what each row is. */
@@ -251,11 +270,13 @@ ritz_status claims_beam(claims_state *state, const claims_line *line)
               .inertia = 1.0,
               .clamp = "none",
               .directions = "126"};
-    double K[SIDE][SIDE], M[SIDE][SIDE];
+    double K[SIDE][SIDE], M[SIDE][SIDE], G[SIDE][SIDE];
 
     RITZ_CHECK(read_beam(line, &b));
     fill_matrices(&b, K, M);
-    RITZ_CHECK(put_matrix(state, line->word[1], false, &b, K));
-    RITZ_CHECK(put_matrix(state, line->word[1], true, &b, M));
+    fill_tension(&b, G);
+    RITZ_CHECK(put_matrix(state, line->word[1], ".k.mtx", &b, K));
+    RITZ_CHECK(put_matrix(state, line->word[1], mass, &b, M));
+    RITZ_CHECK(put_matrix(state, line->word[1], ".g.mtx", &b, G));
     return put_names(state, line->word[1], &b);
 }
