@@ -1,6 +1,7 @@
 /* Reads histories, the coordinates of a reduced component over time, one time
  * after the other. */
 #include "base/alloc.h"
+#include "base/text.h"
 
 #include <ritz/recover.h>
 
@@ -75,19 +76,41 @@ ritz_status ritz_history_open(const char *path,
     return RITZ_OK;
 }
 
+/* Of a body, or of the whole model: the first coordinate and their number. */
+static ritz_status find_coordinates(const ritz_simulation *s,
+                                    const ritz_history_request *request,
+                                    ritz_history *history)
+{
+    const ritz_names names = {"body", s->num_blocks, (const char *)s->block,
+                              sizeof *s->block};
+    const char *whose = request->body ? request->body : "the time response";
+    int64_t count = s->num_coordinates, k = 0;
+
+    RITZ_REFUSE_IF(count == 0, RITZ_ERR_ARGUMENT,
+                   "the time response has no coordinates: ritz-simulate "
+                   "--coordinates stores them");
+    RITZ_REFUSE_IF(!request->body && s->num_blocks > 0, RITZ_ERR_ARGUMENT,
+                   "the time response has the coordinates of %" PRId64
+                   " bodies: of which one? name it by --body",
+                   s->num_blocks);
+    if (request->body) {
+        RITZ_CHECK(ritz_words_find(&names, request->body, &k));
+        history->first = s->block[k].first;
+        count = s->block[k].order;
+    }
+    RITZ_REFUSE_IF(count != request->order, RITZ_ERR_ARGUMENT,
+                   "%s has %" PRId64 " coordinates, the component %" PRId64,
+                   whose, count, request->order);
+    return RITZ_OK;
+}
+
 ritz_status ritz_history_of_simulation(const ritz_simulation *simulation,
                                        const ritz_history_request *request,
                                        ritz_history *out)
 {
     RITZ_OWN(ritz_history) history = {.simulation = simulation};
 
-    RITZ_REFUSE_IF(simulation->num_coordinates == 0, RITZ_ERR_ARGUMENT,
-                   "the time response has no coordinates: ritz-simulate "
-                   "--coordinates stores them");
-    RITZ_REFUSE_IF(
-        simulation->num_coordinates != request->order, RITZ_ERR_ARGUMENT,
-        "the time response has %" PRId64 " coordinates, the component %" PRId64,
-        simulation->num_coordinates, request->order);
+    RITZ_CHECK(find_coordinates(simulation, request, &history));
     RITZ_CHECK(make_room(request, &history));
     history.has_v = history.has_a = true;
     history.has_f =
@@ -109,7 +132,8 @@ static void take_simulated(ritz_history *history, bool *more)
         return;
     history->seconds = s->seconds[k];
     for (int i = 0; i < RATES; i++)
-        memcpy(history->x + i * n, from[i] + k * n,
+        memcpy(history->x + i * n,
+               from[i] + k * s->num_coordinates + history->first,
                (size_t)n * sizeof *history->x);
     for (int64_t j = 0; history->has_f && j < history->num_inputs; j++)
         history->f[j] = s->u[k * s->num_inputs + j];

@@ -39,7 +39,10 @@ int main(int argc, char **argv)
         CLI_TEXT("system", &given.system, "FILE",
                  "system whose coordinates the history has, of which the "
                  "component is a body"),
-        CLI_TEXT("body", &given.body, "NAME", "name of that body"),
+        CLI_TEXT("body", &given.body, "NAME",
+                 "name of that body; a history of a scene with --constraints "
+                 "or --sweep has the coordinates of all bodies, and needs no "
+                 "--system"),
         CLI_WORD("modes", &given.modes, "displacement|acceleration",
                  "how rows are recovered [acceleration where the component "
                  "and the history allow it]"),

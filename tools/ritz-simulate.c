@@ -79,8 +79,9 @@ static const cli_program program = {
                  "with --method modal, highest mode of a component"),          \
         CLI_FLAG(                                                              \
             "coordinates", &(it)->coordinates,                                 \
-            "store the coordinates of a reduced component or system too, "     \
-            "for ritz-recover")
+            "store the coordinates of a reduced component or system too, or "  \
+            "of each body of a scene with --constraints or --sweep, for "      \
+            "ritz-recover")
 
 /* A controller with which the model forms a closed loop. */
 #define LOOP_OPTIONS_IN_TIME(it)                                               \

@@ -142,6 +142,13 @@ void ritz_near_axes_free(ritz_near_axes *axes);
 ritz_status ritz_scene_near_axes(const ritz_scene *scene, const double *setting,
                                  ritz_near_axes *out);
 
+/**
+ * Which of the coordinates of all bodies are those of each body.
+ *
+ * @param[out] out  stage->count, freed by the caller
+ */
+ritz_status ritz_stage_blocks(const ritz_stage *stage, ritz_block **out);
+
 /** The system at every configuration of the scene, or at @p at alone. A spin of
  * constant rate is in its K, D and inputs; of a rate that changes it is at
  * rest. */

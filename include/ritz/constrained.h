@@ -134,12 +134,13 @@ void ritz_constrained_facts_free(ritz_constrained_facts *facts);
  * @param[in] request  its integrator advances methods that add terms to the
  *                     equations of motion; if it is modal, the integrator of
  *                     the method does. x0 and v0 are in the coordinates of all
- *                     bodies
+ *                     bodies, and so are coordinates that are stored
  * @param[out] facts   may be NULL
  * @return RITZ_ERR_ARGUMENT if the step is above the stability limit of the
  *         integrator, for the bodies and the terms of the method (the sentence
  *         has the limit), if the forces of penalty springs would be rounding,
- *         if a motion of a body has no mass, or if coordinates are requested; RITZ_ERR_CONVERGENCE if the motion grows without bound
+ *         or if a motion of a body has no mass; RITZ_ERR_CONVERGENCE if the
+ *         motion grows without bound
  * @cost   O(n^3) once; two products and a solve of order n for each step
  */
 ritz_status ritz_simulate_constrained(const ritz_unjoined *bodies,

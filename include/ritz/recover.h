@@ -118,6 +118,8 @@ typedef struct ritz_history_request {
     bool floating; /* coordinates of a frame may come before those of `order` */
     double step;   /* of formats without times, s; 0: not known */
     int64_t label; /* of the body, in a file with several; 0: the first one */
+    const char *body; /* in a simulation that has the coordinates of several;
+                         NULL: it has those of one model */
 } ritz_history_request;
 
 typedef struct ritz_history {
@@ -125,6 +127,7 @@ typedef struct ritz_history {
     const ritz_simulation *simulation;        /* borrowed */
     int64_t at;                               /* times that were read */
     void *own;                                /* data of the format */
+    int64_t first;                            /* of the body's coordinates */
     int64_t order, num_inputs;                /* of the file */
     const ritz_dense *V;
     bool has_v, has_a, has_f, unforced;
@@ -162,8 +165,10 @@ ritz_status ritz_history_open(const char *path,
                               const ritz_history_request *request,
                               ritz_history *out);
 
-/** Read the coordinates that a simulation has stored; it is borrowed.
- * @return RITZ_ERR_ARGUMENT if it has none, or not request->order */
+/** Read the coordinates that a simulation has stored, of one body if it has
+ * those of several; it is borrowed.
+ * @return RITZ_ERR_ARGUMENT if it has none, or not request->order, or no such
+ *         body */
 ritz_status ritz_history_of_simulation(const ritz_simulation *simulation,
                                        const ritz_history_request *request,
                                        ritz_history *out);

@@ -16,6 +16,7 @@
 #include <ritz/model.h>
 #include <ritz/response.h>
 #include <ritz/spin.h>
+#include <ritz/system.h>
 
 #include <stdbool.h>
 
@@ -146,8 +147,12 @@ typedef struct ritz_simulation {
     double *diagnosis;                  /* diagnosis[k * num_diagnostics + j] */
     int64_t num_coordinates; /* of the model; 0: they are not stored */
     double *q, *v, *a;       /* q, q' and q'': q[k * num_coordinates + j] */
-    int64_t num_state;       /* 0: the run came to its end */
-    double *state;           /* from which the run is continued */
+    int64_t num_blocks;      /* 0: they are those of the model that was run */
+    ritz_block *block;       /* else those of bodies, one after the other */
+    char spin[4 * RITZ_NAME_SIZE]; /* the frame turns, as `spin` of a system
+                                      says; "": it is at rest */
+    int64_t num_state;             /* 0: the run came to its end */
+    double *state;                 /* from which the run is continued */
     char integrator[RITZ_NAME_SIZE];
     char hold[RITZ_NAME_SIZE]; /* "first", "zero" */
     double step;
@@ -232,8 +237,8 @@ ritz_status ritz_simulate_accurate(ritz_model subject,
  * Kinetic energy is that in the frame at rest, with that of the spin itself.
  *
  * @param[in] terms  in the coordinates of the model
- * @return RITZ_ERR_ARGUMENT if the integrator is not trapezoidal, coordinates
- *         are wanted, or sizes disagree; RITZ_ERR_CONVERGENCE, as ritz_simulate
+ * @return RITZ_ERR_ARGUMENT if the integrator is not trapezoidal, or sizes
+ *         disagree; RITZ_ERR_CONVERGENCE, as ritz_simulate
  * @cost   O(r^3) a step while the rate changes, O(r^2) while it does not
  */
 ritz_status ritz_simulate_spun(ritz_model subject, const ritz_spin_terms *terms,

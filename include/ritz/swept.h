@@ -76,9 +76,13 @@ typedef struct ritz_swept_model {
     ritz_dense G, H;    /* Q x Q, phi'M N phi and phi'N'M N phi, N phi = n x phi
                         of the bodies that turn with x; {0}: none turns */
     ritz_io io;         /* for Q */
-    ritz_dense start;   /* e x r: q = start' x0, with x0 in all e modes of the
+    int64_t num_bodies;
+    bool *turns;          /* num_bodies: the body turns with x */
+    ritz_dense V;         /* N x Q: the coordinates of all bodies are V u; {0}:
+                           they are u */
+    ritz_dense start;     /* e x r: q = start' x0, with x0 in all e modes of the
                            system at the start */
-    ritz_dense start_B; /* e x inputs, in the same modes */
+    ritz_dense start_B;   /* e x inputs, in the same modes */
     int64_t start_rigid;  /* how many of these modes are rigid motions */
     double *start_lambda; /* e: their eigenvalues, rigid ones 0 */
     double start_hz[2]; /* lowest flexible and highest frequency at the start */
@@ -160,7 +164,8 @@ ritz_status ritz_swept_lost_force(const ritz_swept_model *model, int64_t input,
  * @param[in] terms  false: leave out the rates of T, as a program does that
  *                   only exchanges matrices
  * @param[in] request  its integrator must be the trapezoidal one; x0 and v0 are
- *                     of all modes at the start
+ *                     of all modes at the start. If coordinates are requested,
+ *                     they are those of all bodies, u or V u
  * @return RITZ_ERR_ARGUMENT if the path leaves the range of the model, if a
  *         hinge turns by more than a quarter turn in a step, if the path
  *         ends before the run while the setting still moves, or if the basis

@@ -103,8 +103,8 @@ typedef struct ritz_switched_report {
  *
  * @param[out] report  may be NULL; filled on failure too, as far as known
  * @return RITZ_ERR_ARGUMENT if the library does not meet the condition, if an
- *         option is outside its range, if request->coordinates is set, or if
- *         ritz_simulate refuses the model; RITZ_ERR_SINGULAR if M is singular
+ *         option is outside its range, or if ritz_simulate refuses the model;
+ *         RITZ_ERR_SINGULAR if M is singular
  * @cost   one factor of M and O(n N^2) once, for N vectors of the library;
  *         O(N^2) for a switch, and O(r^3) if the set changes and its r vectors
  *         are not modes; O(r) for a step, or a product of N x r for vectors

@@ -11,6 +11,7 @@
 
 #include <ritz/reduced.h>
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -47,6 +48,7 @@ typedef struct ritz_block {
     char name[RITZ_NAME_SIZE];
     int64_t first, order; /* r_c */
     int64_t order_full;   /* n of the full component */
+    bool turns;           /* in a time response: a joint turns it as it moves */
 } ritz_block;
 
 typedef struct ritz_system {

@@ -294,20 +294,13 @@ static ritz_status label_system(const ritz_stage *stage, ritz_system *system)
     describe_spin(&scene->spin, system->spin);
     if (stage->count > 0)
         memcpy(system->units, stage->body[0].units, sizeof system->units);
-    RITZ_CHECK_NEW(system->component, stage->count);
+    RITZ_CHECK(ritz_stage_blocks(stage, &system->component));
     system->num_components = stage->count;
-    for (int64_t k = 0; k < stage->count; k++) {
-        ritz_block *block = &system->component[k];
-
-        memcpy(block->name, scene->component[k].name, RITZ_NAME_SIZE);
-        block->first = k > 0 ? block[-1].first + block[-1].order : 0;
-        block->order = stage->body[k].K.ncol;
-        block->order_full = stage->body[k].num_dofs;
+    for (int64_t k = 0; k < stage->count; k++)
         RITZ_REFUSE_IF(
             strcmp(stage->body[k].units, system->units) != 0, RITZ_ERR_ARGUMENT,
             "'%s' is in units '%s' and '%s' in '%s'", scene->component[0].name,
             system->units, scene->component[k].name, stage->body[k].units);
-    }
     RITZ_CHECK_NEW(system->sweep, scene->num_sweeps);
     system->num_sweeps = scene->num_sweeps;
     for (int64_t k = 0; k < scene->num_sweeps; k++)

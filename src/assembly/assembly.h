@@ -345,4 +345,8 @@ ritz_status ritz_assemble_until(const ritz_stage *stage, const ritz_stop *stop,
 /** Whether the work is to end now. @param[in] stop  NULL: never */
 bool ritz_stop_asked(const ritz_stop *stop);
 
+/** diag(V_1, V_2, ...), with a matrix for each body of the stage. */
+ritz_status ritz_stage_expansion(const ritz_stage *stage, const ritz_dense *V,
+                                 ritz_dense *out);
+
 #endif

@@ -57,8 +57,10 @@ ritz_status ritz_sweep_start(const ritz_sweeper *w, ritz_swept_model *m)
     if (k->rigid < m->order)
         m->start_hz[0] = sqrt(k->lambda[k->rigid]) / (2.0 * RITZ_PI);
     m->start_hz[1] = sqrt(fmax(k->lambda[m->order - 1], 0.0)) / (2.0 * RITZ_PI);
-    if (w->asked->origin)
+    if (w->asked->origin) {
+        RITZ_CHECK(ritz_stage_expansion(w->stage, w->asked->V, &m->V));
         return start_from(w, &T, m);
+    }
     RITZ_CHECK(copy_modes(k->V.ncol, k->rigid, k->lambda, m));
     RITZ_CHECK(ritz_dense_mul_tn(&k->V, &m->io.B, &m->start_B));
     return ritz_sweep_correlate(&k->V, &m->M, &T, &m->start);

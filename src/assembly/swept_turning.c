@@ -5,6 +5,7 @@
  */
 #include "assembly/swept.h"
 
+#include "base/alloc.h"
 #include "base/tolerances.h"
 
 #include <math.h>
@@ -67,6 +68,8 @@ ritz_status ritz_sweep_turning(const ritz_sweeper *w,
     const ritz_stage *stage = w->stage;
     const int64_t Q = stage->num_coordinates, last = grid->count - 1;
 
+    RITZ_CHECK_NEW(m->turns, stage->count);
+    m->num_bodies = stage->count;
     if (!stage->scene->sweep[w->asked->sweep].turns)
         return RITZ_OK;
     RITZ_CHECK(ritz_dense_new(Q, Q, &m->G));
@@ -96,6 +99,7 @@ ritz_status ritz_sweep_turning(const ritz_sweeper *w,
                        name, ritz_sweep_name(w), RITZ_INVARIANT_COLUMNS);
         add_turning(&stage->body[k].invariants, n, stage->first[k], &m->G,
                     &m->H);
+        m->turns[k] = true;
     }
     return RITZ_OK;
 }

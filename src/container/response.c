@@ -100,12 +100,25 @@ static ritz_status settle_simulation(const ritz_place *place)
     for (int64_t k = 1; k < s->count; k++)
         RITZ_REFUSE_IF(s->seconds[k] <= s->seconds[k - 1], RITZ_ERR_FORMAT,
                        "'seconds' does not ascend at value %" PRId64, k + 1);
+    if (s->num_blocks > 0) {
+        const ritz_block *last = &s->block[s->num_blocks - 1];
+
+        RITZ_REFUSE_IF(last->first + last->order != s->num_coordinates,
+                       RITZ_ERR_FORMAT,
+                       "'blocks' have %" PRId64 " coordinates, not %" PRId64,
+                       last->first + last->order, s->num_coordinates);
+    }
     return RITZ_OK;
 }
 
 static bool has_rounding(const void *object)
 {
     return ((const ritz_simulation *)object)->energy_rounding > 0.0;
+}
+
+static bool turns(const void *object)
+{
+    return *((const ritz_simulation *)object)->spin;
 }
 
 static const ritz_member simulation_members[] = {
@@ -115,6 +128,9 @@ static const ritz_member simulation_members[] = {
      "how inputs vary within a step: `first` linearly, `zero` not at all"},
     {"damping", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_simulation, damping), "",
      "damping, as `--damping` reads it; may be empty"},
+    {"spin", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_simulation, spin), "",
+     "spin of the frame in which the motion is measured, as in a system",
+     .optional = "", .has = turns},
     {"step", ATTRIBUTE_REAL, RITZ_AT(ritz_simulation, step), "",
      "time step in seconds, which may be smaller than that of the stored "
      "times"},
@@ -163,6 +179,8 @@ static const ritz_member simulation_members[] = {
     {"coordinates/a", SET_REAL, RITZ_AT(ritz_simulation, a), "k c",
      "second derivatives of the coordinates", .optional = "coordinates",
      .some = 'c'},
+    {"blocks", LIST, RITZ_LIST(ritz_simulation, block), "b", .optional = "",
+     .some = 'b', .schema = &ritz_schema_block},
     {0},
 };
 
@@ -177,6 +195,7 @@ const ritz_schema ritz_schema_simulation = {
                "diagnostics/names"},
               {'c', .offset = offsetof(ritz_simulation, num_coordinates),
                "coordinates/q"},
+              {'b', .offset = offsetof(ritz_simulation, num_blocks)},
               {'z', .offset = offsetof(ritz_simulation, num_state), "state"}},
     .members = simulation_members,
     .settle = settle_simulation,

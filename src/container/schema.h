@@ -160,6 +160,6 @@ extern const ritz_schema ritz_schema_component, ritz_schema_basis,
     ritz_schema_rankings, ritz_schema_recovered, ritz_schema_grids,
     ritz_schema_elements, ritz_schema_recovery, ritz_schema_dampers,
     ritz_schema_io, ritz_schema_columns, ritz_schema_origin,
-    ritz_schema_measures;
+    ritz_schema_measures, ritz_schema_block;
 
 #endif

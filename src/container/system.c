@@ -26,10 +26,13 @@ static const ritz_member block_members[] = {
      "number of these rows", "0..2147483647"},
     {"order_full", ATTRIBUTE_WHOLE, RITZ_AT(ritz_block, order_full), "",
      "number of dofs of the full component", "0.."},
+    {"turns", ATTRIBUTE_FLAG, RITZ_AT(ritz_block, turns), "",
+     "1: in a time response, a joint turns the component as it moves",
+     .optional = ""},
     {0},
 };
 
-static const ritz_schema block_schema = {
+const ritz_schema ritz_schema_block = {
     .name = "block",
     .members = block_members,
     .settle = settle_block,
@@ -155,7 +158,7 @@ static const ritz_member members[] = {
     {"sweeps", SET_NAMES, RITZ_AT(ritz_system, sweep), "w",
      "names of the settings of joints, such as `clock`, `wrist`, `wrist.2`"},
     {"blocks", LIST, RITZ_LIST(ritz_system, component), "b",
-     .schema = &block_schema},
+     .schema = &ritz_schema_block},
     {"configurations", LIST, RITZ_LIST(ritz_system, configuration), "k",
      .numbered = true, .schema = &configuration_schema},
     {0},

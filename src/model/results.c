@@ -29,7 +29,8 @@ void ritz_simulation_free(ritz_simulation *simulation)
               simulation->potential, simulation->dissipated, simulation->work,
               simulation->balance);
     RITZ_FREE(simulation->diagnostic, simulation->diagnosis, simulation->q,
-              simulation->v, simulation->a, simulation->state);
+              simulation->v, simulation->a, simulation->block,
+              simulation->state);
     *simulation = (ritz_simulation){0};
 }
 

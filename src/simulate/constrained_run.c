@@ -314,6 +314,8 @@ ritz_status ritz_simulate_constrained(const ritz_unjoined *bodies,
     ritz_simulation_request asked = *request;
     ritz_integrator integrator = {0};
     char name[RITZ_NAME_SIZE];
+    ritz_unjoined extended = *bodies; /* borrowed */
+    RITZ_OWN(ritz_io) io = {0};
     RITZ_OWN(ritz_linked) joined = {0};
     RITZ_OWN(ritz_march) march = {0};
     RITZ_OWN(ritz_constrained_facts) found = {0};
@@ -325,13 +327,14 @@ ritz_status ritz_simulate_constrained(const ritz_unjoined *bodies,
 
     if (bodies->n <= SMALL_RUN)
         single = ritz_blas_single_new();
-    RITZ_REFUSE_IF(request->coordinates, RITZ_ERR_ARGUMENT,
-                   "coordinates are of joined bodies: run them without "
-                   "constraints");
+    if (request->coordinates) {
+        RITZ_CHECK(ritz_coordinates_add(&bodies->io, NULL, &io));
+        extended.io = io;
+    }
     RITZ_CHECK(ritz_request_steps(request, &steps));
     name_run(how, request, &integrator, name);
     asked.integrator = &integrator;
-    RITZ_CHECK(ritz_linked_new(bodies, &joined));
+    RITZ_CHECK(ritz_linked_new(&extended, &joined));
     RITZ_CHECK(take_start(&joined, request->x0, &x0));
     RITZ_CHECK(take_start(&joined, request->v0, &v0));
     asked.x0 = x0;
@@ -346,7 +349,9 @@ ritz_status ritz_simulate_constrained(const ritz_unjoined *bodies,
     }
     RITZ_CHECK(ritz_constrained_march(&joined, &terms, &asked, &march));
     RITZ_CHECK(ritz_march_run(&march, &asked, NULL, &s));
-    RITZ_CHECK(label_run(bodies, &s));
+    RITZ_CHECK(label_run(&extended, &s));
+    if (request->coordinates)
+        RITZ_CHECK(ritz_coordinates_take(bodies->io.num_outputs, &s));
     if (facts)
         RITZ_CHECK(find_cost(&joined, &terms, &asked, &found.step_cost));
     RITZ_MOVE(*out, s);

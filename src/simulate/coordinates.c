@@ -1,10 +1,11 @@
 /*
- * ritz_simulate. If a request wants the coordinates of a dense model over time,
- * they are added to its outputs,
+ * ritz_simulate. If a request includes the coordinates over time, they are added
+ * to the outputs,
  *
- *     q = I q,   q' = I q',   q'' = I q'',
+ *     q = V u,   q' = V u',   q'' = V u'',
  *
- * so that every integrator computes them as it computes any output.
+ * where u are the coordinates of the model and V is mostly the identity, so that
+ * every integrator computes them as it computes any output.
  */
 #include "simulate/motion.h"
 
@@ -13,14 +14,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The model's own outputs, and then n coordinates, velocities and
-   accelerations. */
-static ritz_status extend_outputs(const ritz_io *own, int64_t n, ritz_io *out)
+/* Row i of V. */
+static void copy_row(const ritz_dense *V, int64_t i, int64_t to, ritz_dense *C)
+{
+    for (int64_t j = 0; j < C->ncol; j++)
+        ritz_dense_col(C, j)[to] =
+            V ? ritz_dense_col(V, j)[i] : (double)(i == j);
+}
+
+ritz_status ritz_coordinates_add(const ritz_io *own, const ritz_dense *V,
+                                 ritz_io *out)
 {
     RITZ_OWN(ritz_io) io = {0};
-    const int64_t p = own->num_outputs;
+    const int64_t p = own->num_outputs, n = V ? V->nrow : own->B.nrow;
 
-    RITZ_CHECK(ritz_io_new(n, own->num_inputs, p + 3 * n, &io));
+    RITZ_CHECK(ritz_io_new(own->B.nrow, own->num_inputs, p + 3 * n, &io));
     for (int64_t j = 0; j < own->num_inputs; j++)
         memcpy(io.input[j], own->input[j], sizeof io.input[j]);
     for (int64_t j = 0; j < p; j++)
@@ -29,10 +37,10 @@ static ritz_status extend_outputs(const ritz_io *own, int64_t n, ritz_io *out)
     ritz_dense_put(&own->C, 0, 0, &io.C);
     ritz_dense_put(&own->Cv, 0, 0, &io.Cv);
     ritz_dense_put(&own->Ca, 0, 0, &io.Ca);
-    for (int64_t j = 0; j < n; j++) {
-        ritz_dense_col(&io.C, j)[p + j] = 1.0;
-        ritz_dense_col(&io.Cv, j)[p + n + j] = 1.0;
-        ritz_dense_col(&io.Ca, j)[p + 2 * n + j] = 1.0;
+    for (int64_t i = 0; i < n; i++) {
+        copy_row(V, i, p + i, &io.C);
+        copy_row(V, i, p + n + i, &io.Cv);
+        copy_row(V, i, p + 2 * n + i, &io.Ca);
     }
     RITZ_MOVE(*out, io);
     return RITZ_OK;
@@ -49,9 +57,9 @@ static ritz_status cut_columns(const ritz_simulation *s, int64_t first,
     return RITZ_OK;
 }
 
-/* Move the coordinates out of the outputs, of which the first `own` stay. */
-static ritz_status part_outputs(int64_t own, int64_t n, ritz_simulation *s)
+ritz_status ritz_coordinates_take(int64_t own, ritz_simulation *s)
 {
+    const int64_t n = (s->num_outputs - own) / 3;
     RITZ_OWN_ARRAY double *y = NULL;
 
     RITZ_CHECK(cut_columns(s, 0, own, &y));
@@ -73,18 +81,16 @@ ritz_status ritz_simulate_coordinates(ritz_model subject,
     RITZ_OWN(ritz_io) io = {0};
     RITZ_OWN(ritz_simulation) s = {0};
     const ritz_io *own = NULL;
-    int64_t n = 0;
 
     if (!request->coordinates)
         return run(subject, request, context, out);
     RITZ_REFUSE_IF(subject.kind != RITZ_MODEL_DENSE, RITZ_ERR_ARGUMENT,
                    "coordinates are of reduced components and systems");
     own = subject.dense.io;
-    n = ritz_model_order(subject);
-    RITZ_CHECK(extend_outputs(own, n, &io));
+    RITZ_CHECK(ritz_coordinates_add(own, NULL, &io));
     subject.dense.io = &io;
     RITZ_CHECK(run(subject, request, context, &s));
-    RITZ_CHECK(part_outputs(own->num_outputs, n, &s));
+    RITZ_CHECK(ritz_coordinates_take(own->num_outputs, &s));
     RITZ_MOVE(*out, s);
     return RITZ_OK;
 }

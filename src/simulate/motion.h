@@ -245,6 +245,19 @@ ritz_status ritz_simulate_noting(ritz_model subject,
                                  bool energies, ritz_reach *reach,
                                  ritz_simulation *out);
 
+/**
+ * Inputs and outputs as given, followed by outputs V u, V u' and V u'' of the
+ * coordinates u.
+ *
+ * @param[in] V  NULL: the identity
+ */
+ritz_status ritz_coordinates_add(const ritz_io *own, const ritz_dense *V,
+                                 ritz_io *out);
+
+/** Move the coordinates out of the outputs of a run, of which the first @p own
+ * stay. */
+ritz_status ritz_coordinates_take(int64_t own, ritz_simulation *s);
+
 /** A run of a model, which may be given more outputs than it has. */
 typedef ritz_status ritz_run_function(ritz_model subject,
                                       const ritz_simulation_request *request,

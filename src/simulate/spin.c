@@ -303,13 +303,38 @@ static ritz_status check_request(ritz_model subject,
                    "matrices of a rate that changes are integrated by "
                    "trapezoidal alone, not by %s",
                    request->integrator->name);
-    RITZ_REFUSE_IF(request->coordinates, RITZ_ERR_ARGUMENT,
-                   "coordinates are stored of one linear model alone, not of a "
-                   "rate that changes");
     RITZ_REFUSE_IF(terms->load.nrow != ritz_model_order(subject),
                    RITZ_ERR_ARGUMENT,
                    "the spin is of another model: its order is %ld, not %ld",
                    (long)terms->load.nrow, (long)ritz_model_order(subject));
+    return RITZ_OK;
+}
+
+/* The spin of a run. */
+typedef struct spin_course {
+    const ritz_spin_terms *terms;
+    const ritz_spin_rate *rate;
+} spin_course;
+
+static ritz_status run_spun(ritz_model subject,
+                            const ritz_simulation_request *request,
+                            const void *context, ritz_simulation *out)
+{
+    const spin_course *spin = context;
+    RITZ_OWN(ritz_motion) motion = {0};
+    RITZ_OWN(ritz_march) march = {.step = request->step};
+    RITZ_OWN(ritz_simulation) s = {0};
+
+    RITZ_CHECK(check_request(subject, spin->terms, request));
+    RITZ_CHECK(ritz_motion_dense(subject, false, &motion));
+    RITZ_REFUSE_IF(motion.to.val, RITZ_ERR_ARGUMENT,
+                   "a motion has no mass, as all need in a model that spins");
+    motion.energies = true;
+    RITZ_CHECK(
+        start_spun(spin->terms, spin->rate, subject.dense.io, &motion, &march));
+    RITZ_CHECK(ritz_march_run(&march, request, NULL, &s));
+    RITZ_CHECK(ritz_simulation_label(subject, &s));
+    RITZ_MOVE(*out, s);
     return RITZ_OK;
 }
 
@@ -318,18 +343,7 @@ ritz_status ritz_simulate_spun(ritz_model subject, const ritz_spin_terms *terms,
                                const ritz_simulation_request *request,
                                ritz_simulation *out)
 {
-    RITZ_OWN(ritz_motion) motion = {0};
-    RITZ_OWN(ritz_march) march = {.step = request->step};
-    RITZ_OWN(ritz_simulation) s = {0};
+    const spin_course spin = {terms, rate};
 
-    RITZ_CHECK(check_request(subject, terms, request));
-    RITZ_CHECK(ritz_motion_dense(subject, false, &motion));
-    RITZ_REFUSE_IF(motion.to.val, RITZ_ERR_ARGUMENT,
-                   "a motion has no mass, as all need in a model that spins");
-    motion.energies = true;
-    RITZ_CHECK(start_spun(terms, rate, subject.dense.io, &motion, &march));
-    RITZ_CHECK(ritz_march_run(&march, request, NULL, &s));
-    RITZ_CHECK(ritz_simulation_label(subject, &s));
-    RITZ_MOVE(*out, s);
-    return RITZ_OK;
+    return ritz_simulate_coordinates(subject, request, run_spun, &spin, out);
 }

@@ -589,9 +589,6 @@ static ritz_status check_request(const ritz_swept_model *model,
                    RITZ_ERR_ARGUMENT,
                    "a joint that moves is integrated by trapezoidal, not by %s",
                    request->integrator->name);
-    RITZ_REFUSE_IF(request->coordinates, RITZ_ERR_ARGUMENT,
-                   "coordinates of a joint that moves are of a basis that "
-                   "moves, which no container has");
     return RITZ_OK;
 }
 
@@ -619,10 +616,10 @@ static ritz_status name_channels(const ritz_io *io, ritz_simulation *s)
     return RITZ_OK;
 }
 
-ritz_status ritz_simulate_swept(const ritz_swept_model *model,
-                                const ritz_path *path, bool terms,
-                                const ritz_simulation_request *request,
-                                ritz_simulation *out)
+static ritz_status run_swept(const ritz_swept_model *model,
+                             const ritz_path *path, bool terms,
+                             const ritz_simulation_request *request,
+                             ritz_simulation *out)
 {
     RITZ_OWN(ritz_motion) motion = {0};
     RITZ_OWN(ritz_march) march = {0};
@@ -641,6 +638,26 @@ ritz_status ritz_simulate_swept(const ritz_swept_model *model,
         ritz_general_solve(&((swept *)march.own)->M, false, &motion.push));
     RITZ_CHECK(ritz_march_run(&march, request, NULL, &s));
     RITZ_CHECK(name_channels(&model->io, &s));
+    RITZ_MOVE(*out, s);
+    return RITZ_OK;
+}
+
+ritz_status ritz_simulate_swept(const ritz_swept_model *model,
+                                const ritz_path *path, bool terms,
+                                const ritz_simulation_request *request,
+                                ritz_simulation *out)
+{
+    ritz_swept_model extended = *model; /* borrowed */
+    RITZ_OWN(ritz_io) io = {0};
+    RITZ_OWN(ritz_simulation) s = {0};
+
+    if (!request->coordinates)
+        return run_swept(model, path, terms, request, out);
+    RITZ_CHECK(
+        ritz_coordinates_add(&model->io, model->V.val ? &model->V : NULL, &io));
+    extended.io = io;
+    RITZ_CHECK(run_swept(&extended, path, terms, request, &s));
+    RITZ_CHECK(ritz_coordinates_take(model->io.num_outputs, &s));
     RITZ_MOVE(*out, s);
     return RITZ_OK;
 }

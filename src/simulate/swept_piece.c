@@ -244,14 +244,14 @@ void ritz_swept_spread(const double w[static 4], double factor, int64_t r,
 
 void ritz_swept_model_free(ritz_swept_model *m)
 {
-    enum { OWNED = 10 };
-    ritz_dense *const all[OWNED] = {&m->F,     &m->bend,   &m->M, &m->K,
-                                    &m->D,     &m->G,      &m->H, &m->turn,
-                                    &m->start, &m->start_B};
+    enum { OWNED = 11 };
+    ritz_dense *const all[OWNED] = {&m->F,     &m->bend,    &m->M, &m->K,
+                                    &m->D,     &m->G,       &m->H, &m->turn,
+                                    &m->start, &m->start_B, &m->V};
 
     for (int k = 0; k < OWNED; k++)
         ritz_dense_free(all[k]);
     ritz_io_free(&m->io);
-    RITZ_FREE(m->stiffness, m->damping, m->start_lambda);
+    RITZ_FREE(m->stiffness, m->damping, m->start_lambda, m->turns);
     *m = (ritz_swept_model){0};
 }

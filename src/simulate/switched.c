@@ -465,7 +465,6 @@ static ritz_status start_march(const ritz_library *library,
 }
 
 static ritz_status check_request(ritz_model subject,
-                                 const ritz_simulation_request *request,
                                  const ritz_switched *switched)
 {
     RITZ_REFUSE_IF(subject.kind != RITZ_MODEL_COMPONENT &&
@@ -480,8 +479,6 @@ static ritz_status check_request(ritz_model subject,
                    "damping ratios of a component need its modes, which are "
                    "not known: give rayleigh damping, or reduce it by 'full' "
                    "first");
-    RITZ_REFUSE_IF(request->coordinates, RITZ_ERR_ARGUMENT,
-                   "coordinates of a switched model are not stored");
     RITZ_REFUSE_IF(
         !(switched->least > 0.0) || !(switched->least < 1.0), RITZ_ERR_ARGUMENT,
         "an indicator is above 0 and below 1, not %g", switched->least);
@@ -513,15 +510,20 @@ static void fill_report(const ritz_march *march, const ritz_library *library,
 /* It has the name of the run only: `modal` propagates the sets. */
 static const ritz_integrator switched_name = {.name = "switched"};
 
-ritz_status ritz_simulate_switched(ritz_model subject,
-                                   const ritz_simulation_request *request,
-                                   const ritz_switched *switched,
-                                   ritz_switched_report *report,
-                                   ritz_simulation *out)
+/* What a run of a switched model takes and yields. */
+typedef struct switched_run {
+    const ritz_switched *switched;
+    ritz_switched_report *found;
+} switched_run;
+
+static ritz_status run_switched(ritz_model subject,
+                                const ritz_simulation_request *request,
+                                const void *context, ritz_simulation *out)
 {
+    const switched_run *run = context;
+    const ritz_switched *switched = run->switched;
+    ritz_switched_report *found = run->found;
     ritz_simulation_request asked = *request;
-    ritz_switched_report unwanted = {0};
-    ritz_switched_report *found = report ? report : &unwanted;
     RITZ_OWN(ritz_motion) full = {0}, motion = {0};
     RITZ_OWN(ritz_library) library = {0};
     RITZ_OWN(ritz_march) march = {.motion = &motion};
@@ -531,7 +533,7 @@ ritz_status ritz_simulate_switched(ritz_model subject,
     *found = (ritz_switched_report){0};
     for (int64_t k = 0; k < switched->num_libraries; k++)
         found->num_given += switched->library[k].ncol;
-    RITZ_CHECK(check_request(subject, request, switched));
+    RITZ_CHECK(check_request(subject, switched));
     asked.integrator = &ritz_integrator_trapezoidal; /* full matrices */
     RITZ_CHECK(ritz_motion_full(subject, &asked, &full));
     RITZ_CHECK(ritz_library_new(request, switched, &full, &library));
@@ -545,4 +547,16 @@ ritz_status ritz_simulate_switched(ritz_model subject,
     fill_report(&march, &library, found);
     RITZ_MOVE(*out, s);
     return RITZ_OK;
+}
+
+ritz_status ritz_simulate_switched(ritz_model subject,
+                                   const ritz_simulation_request *request,
+                                   const ritz_switched *switched,
+                                   ritz_switched_report *report,
+                                   ritz_simulation *out)
+{
+    ritz_switched_report unwanted = {0};
+    const switched_run run = {switched, report ? report : &unwanted};
+
+    return ritz_simulate_coordinates(subject, request, run_switched, &run, out);
 }

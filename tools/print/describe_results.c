@@ -102,6 +102,14 @@ ritz_status describe_simulation(cli_run *run, const ritz_simulation *s)
     if (s->num_coordinates > 0)
         sink_field(run, "coordinates", "", "%ld, with rates and accelerations",
                    s->num_coordinates);
+    SINK_EACH(run, "bodies", k, s->num_blocks) {
+        cli_say(run, "  %-14s %-20s %ld coordinates%s", k > 0 ? "" : "bodies",
+                s->block[k].name, s->block[k].order,
+                s->block[k].turns ? ", turned by the joint" : "");
+        sink_add(run, "%s", s->block[k].name);
+    }
+    if (*s->spin)
+        sink_field(run, "spin", "spin", "%s", s->spin);
     describe_energies(run, s);
     describe_diagnostics(run, s);
     return RITZ_OK;

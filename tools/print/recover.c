@@ -15,6 +15,7 @@ typedef struct recovery {
     model body;
     ritz_dense V; /* q = V x; {0}: the history has q */
     bool floats;  /* x is relative to the rigid motion of a frame */
+    bool turned;  /* a joint turned the body during the run */
     ritz_damping damping;
     ritz_recoverer rules;
     ritz_recovered peaks;
@@ -40,19 +41,78 @@ static void recovery_free(recovery *r)
 
 /* ---- what is read ------------------------------------------------------- */
 
+/* Whether the history has the coordinates of the bodies of a scene. */
+static bool has_bodies(const recovery *r)
+{
+    return r->source.kind == MODEL_SIMULATION &&
+           r->source.simulation.num_blocks > 0;
+}
+
+/* What turns the body: its forces are in the equations of motion, and not among
+   those of mode acceleration. NULL: nothing does. */
+static const char *find_turning(const recovery *r)
+{
+    if (r->turned)
+        return "the joint of --sweep";
+    if (r->source.kind == MODEL_SIMULATION && *r->source.simulation.spin)
+        return r->source.simulation.spin;
+    return r->system.kind == MODEL_SYSTEM && *r->system.system.spin
+               ? r->system.system.spin
+               : NULL;
+}
+
+static ritz_status find_body(int64_t count, const ritz_block *block,
+                             const char *name, int64_t *out)
+{
+    const ritz_names bodies = {"body", count, (const char *)block,
+                               sizeof *block};
+
+    return ritz_words_find(&bodies, name, out);
+}
+
+/* A body of a history that has the coordinates of all bodies must be the
+   component, and that of the system. */
+static ritz_status check_body(recovery *r)
+{
+    const recover_options *given = r->given;
+    const ritz_simulation *s = &r->source.simulation;
+    const ritz_system *system = &r->system.system;
+    int64_t k = 0, i = 0;
+
+    if (!given->body)
+        return RITZ_OK; /* refused when the history is opened */
+    RITZ_CHECK_IN(r->run->operand[0],
+                  find_body(s->num_blocks, s->block, given->body, &k));
+    RITZ_REFUSE_IF(
+        s->block[k].order_full != r->body.reduced.num_dofs, RITZ_ERR_ARGUMENT,
+        "'%s' has %" PRId64 " dofs in '%s' and %" PRId64 " in its file",
+        given->body, s->block[k].order_full, r->run->operand[0],
+        r->body.reduced.num_dofs);
+    r->turned = s->block[k].turns;
+    if (!given->system)
+        return RITZ_OK;
+    RITZ_CHECK(model_read(r->run, given->system, MODEL_SYSTEM, &r->system));
+    RITZ_CHECK_IN(given->system, find_body(system->num_components,
+                                           system->component, given->body, &i));
+    RITZ_REFUSE_IF(
+        system->component[i].order != s->block[k].order, RITZ_ERR_ARGUMENT,
+        "'%s' has %" PRId64 " coordinates in '%s' and %" PRId64 " in '%s'",
+        given->body, s->block[k].order, r->run->operand[0],
+        system->component[i].order, given->system);
+    return RITZ_OK;
+}
+
 /* The coordinates of a body of a system: q = P x. */
 static ritz_status take_system(recovery *r)
 {
     const recover_options *given = r->given;
     const ritz_system *system = &r->system.system;
-    ritz_names bodies = {"body", 0, NULL, sizeof *system->component};
     int64_t k = 0;
 
     RITZ_CHECK(model_read(r->run, given->system, MODEL_SYSTEM, &r->system));
     RITZ_CHECK(model_at(&r->system, given->system, given->model.at));
-    bodies.count = system->num_components;
-    bodies.first = (const char *)system->component;
-    RITZ_CHECK_IN(given->system, ritz_words_find(&bodies, given->body, &k));
+    RITZ_CHECK_IN(given->system, find_body(system->num_components,
+                                           system->component, given->body, &k));
     RITZ_REFUSE_IF(
         r->system.at->P[k].nrow != r->body.reduced.K.ncol, RITZ_ERR_ARGUMENT,
         "'%s' has %ld coordinates in '%s' and %ld in its file", given->body,
@@ -130,7 +190,7 @@ static ritz_status take_damping(recovery *r)
     if (!text && r->source.kind == MODEL_SIMULATION)
         text = r->source.simulation.damping;
     RITZ_CHECK(model_damping(&r->body, text, &r->damping));
-    if (r->given->system && ritz_damping_has_ratios(&r->damping))
+    if (r->given->body && ritz_damping_has_ratios(&r->damping))
         r->damping = (ritz_damping){0};
     return RITZ_OK;
 }
@@ -145,10 +205,14 @@ static ritz_status read_models(recovery *r)
         RITZ_CHECK(model_read(run, path, MODEL_SIMULATION, &r->source));
     else
         RITZ_CHECK(cli_input(run, path));
+    if (!given->system && given->body && !has_bodies(r))
+        cli_refuse(run->program, "--system and --body belong together");
     RITZ_CHECK(model_read(run, given->component, MODEL_REDUCED, &r->body));
     RITZ_CHECK(model_prefix(&r->body, given->component, given->model.order));
     RITZ_CHECK_IN(given->component, model_tune(&r->body, &given->model.damper));
-    if (given->system)
+    if (has_bodies(r))
+        RITZ_CHECK(check_body(r));
+    else if (given->system)
         RITZ_CHECK(take_system(r));
     if (given->transform)
         RITZ_CHECK(take_transform(r));
@@ -168,10 +232,11 @@ static ritz_status open_history(recovery *r)
         .v = given->v,
         .a = given->a,
         .f = given->f,
-        .unforced = given->system != NULL,
+        .unforced = given->body != NULL,
         .floating = is_floating(given),
         .step = given->step,
         .label = given->label,
+        .body = has_bodies(r) ? given->body : NULL,
     };
 
     if (r->source.kind == MODEL_SIMULATION)
@@ -191,7 +256,7 @@ static bool can_accelerate(const recovery *r)
 
     for (int64_t k = 0; k < reduced->num_quantities; k++)
         any = any || reduced->quantity[k].Q.val;
-    return any && !r->floats && h->has_v && h->has_a &&
+    return any && !r->floats && !find_turning(r) && h->has_v && h->has_a &&
            (h->has_f || h->unforced || reduced->io.num_inputs == 0);
 }
 
@@ -207,6 +272,10 @@ static ritz_status make_rules(recovery *r)
                    RITZ_ERR_ARGUMENT,
                    "it has no quantities to recover: ritz-import --recovery "
                    "adds them");
+    RITZ_REFUSE_IF(acceleration && find_turning(r), RITZ_ERR_ARGUMENT,
+                   "mode acceleration leaves out the inertia forces of a body "
+                   "that turns, here by %s: give --modes displacement",
+                   find_turning(r));
     RITZ_CHECK(
         ritz_recoverer_new(reduced, &r->damping, acceleration, &r->rules));
     RITZ_CHECK(ritz_recovered_new(&r->rules, &r->peaks));
@@ -363,7 +432,7 @@ static void refuse_options(const cli_program *program,
         cli_refuse(program, "of which component? name it by --component");
     if (!run->output && !given->maxima && !given->table)
         cli_refuse(program, "nothing to do: give -o, --maxima or --table");
-    if (!given->system != !given->body)
+    if (given->system && !given->body)
         cli_refuse(program, "--system and --body belong together");
     if (given->system && given->transform)
         cli_refuse(program, "--system and --transform, one of them");

@@ -107,6 +107,16 @@ simulation_function simulation_switched;
 bool simulation_spins(const simulation_task *task);
 simulation_function simulation_spin;
 
+/**
+ * Name the bodies of the scene in a run that has stored their coordinates.
+ *
+ * @param[in] turns  of each body, whether a joint turns it; NULL: none does
+ */
+ritz_status simulation_name_bodies(const simulation_task *task,
+                                   const bool *turns, ritz_simulation *s);
+/** Store the spin of the frame in which the motion is. */
+void simulation_name_spin(const simulation_task *task, ritz_simulation *s);
+
 /* A joint that moves: simulation_swept.c. */
 bool simulation_sweep_asked(const simulation_options *given);
 simulation_function simulation_sweep;

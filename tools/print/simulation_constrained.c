@@ -176,6 +176,7 @@ ritz_status simulation_constrained(simulation_task *task,
     asked.x0 = x0;
     asked.v0 = v0;
     RITZ_CHECK(ritz_simulate_constrained(&bodies, &how, &asked, &facts, &s));
+    RITZ_CHECK(simulation_name_bodies(task, NULL, &s));
     ritz_damping_print(&task->m.damping, s.damping);
     if (s.num_state == 0) {
         say_facts(task->run, &bodies, &how, &facts);

@@ -140,6 +140,7 @@ ritz_status simulation_long_run(simulation_task *task,
         request->context = &watch;
         request->from = part.num_state > 0 ? &part : NULL;
         RITZ_CHECK(simulate(task, request, &s));
+        simulation_name_spin(task, &s);
         ritz_simulation_free(&part);
         RITZ_MOVE(part, s);
         if (part.num_state == 0)

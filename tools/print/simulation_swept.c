@@ -313,7 +313,8 @@ static ritz_status run_basis(const simulation_task *d, bool main,
         say_basis(d->run, main, basis, &made);
     if (!request->from && main)
         RITZ_CHECK(say_start(d, path, basis, &made));
-    return ritz_simulate_swept(&made, path, basis->terms, request, out);
+    RITZ_CHECK(ritz_simulate_swept(&made, path, basis->terms, request, out));
+    return simulation_name_bodies(d, basis->terms ? made.turns : NULL, out);
 }
 
 /* Repeat the run with the other basis, and print how much they differ. */
@@ -328,6 +329,7 @@ static ritz_status compare_bases(simulation_task *d, const ritz_path *path,
 
     again.stop = NULL;
     again.from = NULL;
+    again.coordinates = false;
     RITZ_CHECK(run_basis(d, false, path, basis, &again, &other));
     RITZ_CHECK(ritz_simulation_difference(&other, s, &response));
     sink_field(d->run, "against", "against,response_error,energy_error",

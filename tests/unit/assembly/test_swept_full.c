@@ -452,9 +452,6 @@ static void paths_and_requests_without_a_run_are_refused(void **state)
     assert_fails(ritz_simulate_swept(&model, &far, true, &request, &s),
                  RITZ_ERR_ARGUMENT,
                  "'p' goes from 20 to 66, beyond the model's 20 to 65");
-    request.coordinates = true;
-    assert_fails(ritz_simulate_swept(&model, &smooth, true, &request, &s),
-                 RITZ_ERR_ARGUMENT, "a basis that moves");
     request.integrator = &ritz_integrator_modal;
     assert_fails(ritz_simulate_swept(&model, &smooth, true, &request, &s),
                  RITZ_ERR_ARGUMENT,

@@ -474,6 +474,15 @@ static void a_simulation_comes_back(void **)
     assert_same(a.q, b.q, a.count * a.num_coordinates, 8);
     assert_same(a.v, b.v, a.count * a.num_coordinates, 8);
     assert_same(a.a, b.a, a.count * a.num_coordinates, 8);
+    assert_int_equal(b.num_blocks, 2);
+    for (int k = 0; k < 2; k++) {
+        assert_string_equal(a.block[k].name, b.block[k].name);
+        assert_int_equal(a.block[k].first, b.block[k].first);
+        assert_int_equal(a.block[k].order, b.block[k].order);
+        assert_int_equal(a.block[k].order_full, b.block[k].order_full);
+        assert_true(a.block[k].turns == b.block[k].turns);
+    }
+    assert_string_equal(a.spin, b.spin);
     assert_near(a.step, b.step, 0.0);
     assert_string_equal(a.integrator, b.integrator);
     assert_string_equal(a.hold, b.hold);

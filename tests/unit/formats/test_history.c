@@ -410,6 +410,42 @@ static void simulations_need_their_coordinates(void **)
     assert_false(history.has_f);
 }
 
+/* Two bodies with a coordinate and two. */
+static void simulations_have_coordinates_of_bodies(void **)
+{
+    ritz_block block[2] = {{.name = "rotor", .order = 1},
+                           {.name = "stator", .first = 1, .order = 2}};
+    double seconds[2] = {0.0, 0.5}, q[6] = {1, 2, 3, 4, 5, 6};
+    const ritz_simulation s = {.count = 2,
+                               .seconds = seconds,
+                               .num_coordinates = 3,
+                               .q = q,
+                               .v = q,
+                               .a = q,
+                               .num_blocks = 2,
+                               .block = block};
+    ritz_history_request request = {.order = 2, .unforced = true};
+    RITZ_OWN(ritz_history) history = {0};
+    ritz_instant now = {0};
+    bool more = false;
+
+    assert_fails(ritz_history_of_simulation(&s, &request, &history),
+                 RITZ_ERR_ARGUMENT, "of 2 bodies: of which one? name it by");
+    request.body = "rotr";
+    assert_fails(ritz_history_of_simulation(&s, &request, &history),
+                 RITZ_ERR_ARGUMENT, "unknown body 'rotr', is 'rotor' meant?");
+    request.body = "rotor";
+    assert_fails(ritz_history_of_simulation(&s, &request, &history),
+                 RITZ_ERR_ARGUMENT, "rotor has 1 coordinates, the component 2");
+    request.body = "stator";
+    assert_ok(ritz_history_of_simulation(&s, &request, &history));
+    assert_ok(ritz_history_next(&history, &now, &more));
+    assert_near(now.q[0], 2.0, 0.0);
+    assert_ok(ritz_history_next(&history, &now, &more));
+    assert_near(now.q[0], 5.0, 0.0);
+    assert_near(now.a[1], 6.0, 0.0);
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_table_has_blocks_of_columns),
     cmocka_unit_test(a_table_has_names),
@@ -423,6 +459,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(what_is_no_history_is_refused),
     cmocka_unit_test(damaged_files_are_refused),
     cmocka_unit_test(simulations_need_their_coordinates),
+    cmocka_unit_test(simulations_have_coordinates_of_bodies),
     cmocka_unit_test(all_allocations_may_fail),
 };
 

@@ -801,10 +801,6 @@ static void requests_without_sense_are_refused(void **state)
 
     (void)state;
     assert_ok(joined_new(true, &j));
-    request.coordinates = true;
-    assert_fails(run(&j, "none", &request, &s), RITZ_ERR_ARGUMENT,
-                 "coordinates are of joined bodies");
-    request.coordinates = false;
     assert_fails(run(&j, "penalty:hz=0", &request, &s), RITZ_ERR_ARGUMENT,
                  "a frequency above 0");
     assert_fails(run(&j, "penalty:hz=1e155", &request, &s), RITZ_ERR_ARGUMENT,

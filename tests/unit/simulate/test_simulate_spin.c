@@ -262,10 +262,6 @@ static void requests_that_a_spin_cannot_take_are_refused(void **)
     assert_fails(ritz_simulate_spun(model_of(&p), &none, &ramp, &request, &s),
                  RITZ_ERR_ARGUMENT,
                  "the spin is of another model: its order is 0");
-    request.coordinates = true;
-    assert_fails(
-        ritz_simulate_spun(model_of(&p), &p.terms, &ramp, &request, &s),
-        RITZ_ERR_ARGUMENT, "coordinates are stored of one linear model alone");
     request.integrator = &ritz_integrator_modal;
     assert_fails(
         ritz_simulate_spun(model_of(&p), &p.terms, &ramp, &request, &s),

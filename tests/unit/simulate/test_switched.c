@@ -555,9 +555,6 @@ static void requests_without_sense_are_refused(void **state)
     r.switched.hysteresis = -0.1;
     assert_fails(try_run(&r), RITZ_ERR_ARGUMENT, "a hysteresis is");
     r.switched.hysteresis = 0.0;
-    r.request.coordinates = true;
-    assert_fails(try_run(&r), RITZ_ERR_ARGUMENT, "are not stored");
-    r.request.coordinates = false;
     r.switched.dwell = -1.0;
     assert_fails(try_run(&r), RITZ_ERR_ARGUMENT,
                  "a dwell of -1 s is not within 0 and");
