@@ -85,7 +85,8 @@ ritz_status ritz_simulate_coordinates(ritz_model subject,
     if (!request->coordinates)
         return run(subject, request, context, out);
     RITZ_REFUSE_IF(subject.kind != RITZ_MODEL_DENSE, RITZ_ERR_ARGUMENT,
-                   "coordinates are of reduced components and systems");
+                   "coordinates are of reduced components and systems: "
+                   "ritz-reduce a component first, by 'full' without loss");
     own = subject.dense.io;
     RITZ_CHECK(ritz_coordinates_add(own, NULL, &io));
     subject.dense.io = &io;

@@ -120,8 +120,6 @@ works '  stresses are those of the eliminated system' \
     $python differ.py none joined 1e-9
 run penalty scene.yaml --at clock=90 --constraints penalty:hz=800
 recovered penalty 1e-12 'by mode acceleration'
-run index-2 scene.yaml --at clock=90 --constraints index-2
-recovered index-2 1e-12 'by mode acceleration'
 
 json 0 ritz-info none.h5
 holds '  the bodies are named' 'j["bodies"] == ["rotor", "stator", "platform"]'
