@@ -110,16 +110,17 @@ run() {
 
 # --- the eliminated system, and bodies that constraints hold ------------------
 
-# 1e-12: outputs and coordinates are sums of the same terms; accelerations cancel
+# outputs and coordinates are sums of the same terms, whose forces cancel in
+# accelerations to 1e-3 and less
 run joined scene.yaml --at clock=90 --method trapezoidal
-recovered joined 1e-12 'by mode acceleration'
+recovered joined 1e-10 'by mode acceleration'
 run none scene.yaml --at clock=90 --constraints none
-recovered none 1e-12 'by mode acceleration'
+recovered none 1e-10 'by mode acceleration'
 # rounding in frequencies that are up to 1e3 times those of the output
 works '  stresses are those of the eliminated system' \
     $python differ.py none joined 1e-9
 run penalty scene.yaml --at clock=90 --constraints penalty:hz=800
-recovered penalty 1e-12 'by mode acceleration'
+recovered penalty 1e-10 'by mode acceleration'
 
 json 0 ritz-info none.h5
 holds '  the bodies are named' 'j["bodies"] == ["rotor", "stator", "platform"]'
@@ -146,15 +147,15 @@ expect 2 '--system and --body belong together' ritz-recover joined.h5 \
 # --- a joint that moves -------------------------------------------------------
 
 run cut scene.yaml --sweep clock=90:120:0.4s --sweep-modes 20
-recovered cut 1e-12 'by mode acceleration'
+recovered cut 1e-10 'by mode acceleration'
 run still scene.yaml --sweep clock=90:90.00001:0.4s --sweep-basis full
-recovered still 1e-12 'by mode acceleration'
+recovered still 1e-10 'by mode acceleration'
 # 1e-5 degrees are 2e-7, which changes stresses by about as much
 works '  a joint that hardly moves gives the stresses of one at rest' \
     $python differ.py still joined 1e-6
 { cat scene.yaml && echo 'select: {modes: [1, 2, 4]}'; } >few.yaml
 run one few.yaml --sweep clock=90:120:0.4s --sweep-basis one
-recovered one 1e-12 'by mode acceleration'
+recovered one 1e-10 'by mode acceleration'
 
 # The same with the rotor behind the joint that moves.
 sed -n '/rotor:/p' scene.yaml >rotor.row
@@ -162,17 +163,17 @@ sed -e '/  rotor:/d' -e '/  platform:/r rotor.row' scene.yaml >behind.yaml
 run behind behind.yaml --sweep clock=90:120:0.4s --sweep-modes 20
 expect 0 'rotor                30 coordinates, turned by the joint' \
     ritz-info behind.h5
-recovered behind 1e-12 'by mode displacement'
+recovered behind 1e-10 'by mode displacement'
 expect 1 'of a body that turns, here by the joint of --sweep' ritz-recover \
     behind.h5 --component small.h5 --body rotor --modes acceleration --table x.tsv
 
 # --- vectors that are switched, and a controller ------------------------------
 
 run exact scene.yaml --at clock=90
-recovered exact 1e-12 'by mode acceleration'
+recovered exact 1e-10 'by mode acceleration'
 run switched scene.yaml --at clock=90 --switched modes --switch-interval 1e-3 \
     --indicator 0.99999999
-recovered switched 1e-12 'by mode acceleration'
+recovered switched 1e-10 'by mode acceleration'
 # vectors that hold 1e-8 of |R|^2, 1e-4 of the forces, do not move; measured 8e-4
 works '  stresses are those of the model, to what sets leave out' \
     $python differ.py switched exact 5e-3
@@ -185,7 +186,7 @@ END_PY
 ritz-import -q --state-space law.mat -o law.h5
 run loop scene.yaml --at clock=90 --controller law.h5 --connect v3=u1 \
     --connect y1=motor --force
-recovered loop 1e-12 'by mode acceleration'
+recovered loop 1e-10 'by mode acceleration'
 
 # --- a scene that spins -------------------------------------------------------
 
@@ -198,13 +199,13 @@ for name in ramp steady; do
     run $name $name.yaml --at clock=90 --method trapezoidal
     expect 0 'spin           consistent' ritz-info $name.h5
     [ $name = ramp ] || ritz-assemble -q $name.yaml -o system.h5
-    recovered $name 1e-12 'by mode displacement'
+    recovered $name 1e-10 'by mode displacement'
     expect 1 'of a body that turns, here by consistent' ritz-recover $name.h5 \
         --component small.h5 --system system.h5 --at clock=90 --body rotor \
         --modes acceleration --table x.tsv
 done
 run steady steady.yaml --at clock=90 --constraints baumgarte
-recovered steady 1e-12 'by mode displacement'
+recovered steady 1e-10 'by mode displacement'
 
 # --- a run that is stopped and continued --------------------------------------
 

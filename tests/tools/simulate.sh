@@ -194,7 +194,6 @@ other '--sweep-against full' --sweep --controller "$loop"
 other '--indicator 0.5' --switched --controller "$loop"
 other '--up-to-hz 5' "$linear, --controller or --sweep" --constraints \
     '--constraints none'
-other '--coordinates' "$linear or --controller" --sweep '--sweep a=0:1:1'
 other '--rho 0.5' "$linear, --constraints or --controller" --switched \
     '--switched modes'
 other '--damper a=1' "$linear, --switched, --controller, a rate of spin that \
