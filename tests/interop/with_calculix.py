@@ -2,9 +2,12 @@
 """with_calculix.py PROGRAMS - CalculiX stores the matrices of a deck, and finds
 the frequencies that ritz-basis finds of them; the forces that it prints for unit
 displacements are our guyan, and so is its substructure from version 2.21 on.
+Its buckling factor is that of ritz-check, with the geometric stiffness that its
+matrices gain by a small load.
 
 CCX names the program [ccx], which must then condense substructures; that of
 Debian 12 does not. docs/import.md tells why, and how release 2.23 is built."""
+import json
 import os
 import re
 import shutil
@@ -13,6 +16,7 @@ import tempfile
 
 import h5py
 import numpy
+import scipy.io
 import scipy.sparse
 
 from common import EXTERNAL, Tap, Tools
@@ -23,6 +27,7 @@ FREQUENCY = ["*STEP", "*FREQUENCY", "12", "*END STEP"]
 # half a unit of the last digit of 0.1000000 and of thirteen digits
 SEVEN, THIRTEEN = 5.1e-7, 5.1e-13
 KEPT = 55, 63  # two corners of the free end
+PUSHED = 55  # its first node
 SUBSTRUCTURE = [
     "*STEP", "*SUBSTRUCTURE GENERATE", "*RETAINED NODAL DOFS, SORTED=NO",
     "KEPT, 1, 3", "*SUBSTRUCTURE MATRIX OUTPUT, STIFFNESS=YES, OUTPUT "
@@ -174,6 +179,52 @@ def check_substructure(tap, tools, K):
         tap.near(again, found, 0.0, "and so is its MATRIX INPUT, in every bit")
 
 
+def push(total):
+    """*CLOAD of a force along -x, spread over the free end."""
+    share = numpy.outer([0.25, 0.5, 0.25], [0.25, 0.5, 0.25]).ravel()
+    return ["*CLOAD"] + [f"{PUSHED + k}, 1, {-total * part:.9f}"
+                         for k, part in enumerate(share)]
+
+
+def read_stored(path):
+    """The triangle of a matrix that CalculiX stored."""
+    row, col, value = numpy.loadtxt(path).T
+    at = row.astype(int) - 1, col.astype(int) - 1
+    return scipy.sparse.csc_matrix((value, at))
+
+
+def check_buckling(tap, tools):
+    """Loads s and -s change K by s KG and -s KG, and by the deformation of the
+    elements: of the factor, by the strain at which it buckles or less."""
+    total = 1e5
+    write(tools, "buckle.inp", block() + ["*STEP", "*BUCKLE", "2"]
+          + push(total) + ["*END STEP"])
+    run_calculix("buckle.inp", tools.folder)
+    loaded = []
+    for sign, deck in (1, "pressed"), (-1, "pulled"):
+        write(tools, deck + ".inp", block() + ["*STEP", "*STATIC"]
+              + push(sign * total) + ["*END STEP", "*STEP, PERTURBATION"]
+              + STORE[1:])
+        run_calculix(deck + ".inp", tools.folder)
+        loaded.append(read_stored(tools.folder / f"{deck}.sti"))
+    gained = (loaded[0] - loaded[1]) / 2.0
+    gained += gained.T - scipy.sparse.diags(gained.diagonal())
+    scipy.io.mmwrite(tools.folder / "KG.mtx", gained, symmetry="symmetric",
+                     precision=17)
+    tools("ritz-import", "--stiffness", "store.sti", "--mass", "store.mas",
+          "--dofs", "store.dof", "--bulk", "store.inp",
+          "--geometric-stiffness", "KG.mtx@push", "-o", "column.h5")
+    found = [check["value"] for check in
+             json.loads(tools("ritz-check", "--json", "column.h5"))["checks"]
+             if check["name"] == "buckling:push"]
+    printed = re.search(r"^ +1 +(\S+)$",
+                        (tools.folder / "buckle.dat").read_text(), re.M)
+    factor = float(printed[1])
+    tap.near(numpy.array(found), numpy.array([factor]),
+             factor * total / (0.2 * 0.3 * 2.1e11),  # measured: 6.3e-4
+             "the buckling factor is that of CalculiX")
+
+
 def check_rod(tap, tools):
     """A connecting rod of quadratic tetrahedra, free, 2805 dofs."""
     deck = EXTERNAL / "calculix/conrod/conrod.inp"
@@ -200,6 +251,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         tools = Tools(sys.argv[1], folder)
         check_block(tap, tools)
+        check_buckling(tap, tools)
         check_substructure(tap, tools, check_guyan(tap, tools))
         check_rod(tap, tools)
     tap.finish()
