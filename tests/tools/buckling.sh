@@ -70,6 +70,47 @@ expect 1 'needs the geometric stiffness' ritz-import --stiffness K.mtx \
 expect 0 '' import_column --preload tip=2.5 -o buckled.h5
 expect 1 'stiffness-definite' ritz-check buckled.h5
 
+# --- files that are not what they should be -----------------------------------
+
+works 'odd files are made' /usr/bin/python3 -s - <<'END'
+lines = open("tip.mtx").read().splitlines()
+head, size, entries = lines[0], lines[1], [l.split() for l in lines[2:]]
+n, count = int(size.split()[0]), len(entries)
+def put(name, head, size, entries):
+    with open(name, "w") as file:
+        print(head, size, *map(" ".join, entries), sep="\n", file=file)
+put("zero.mtx", head, f"{n} {n} 0", [])
+short = [e for e in entries if max(map(int, e[:2])) <= n - 3]
+put("short.mtx", head, f"{n - 3} {n - 3} {len(short)}", short)
+put("nan.mtx", head, size, entries[:-1] + [entries[-1][:2] + ["nan"]])
+off = [e for e in entries if e[0] != e[1]][:1]
+both = [e for e in entries if e[0] == e[1]] + off
+put("lopsided.mtx", head.replace("symmetric", "general"),
+    f"{n} {n} {len(both)}", both)
+put("seven.mtx", head, size,
+    [e[:2] + [f"{float(e[2]):.6e}"] for e in entries])
+END
+bare() {
+    ritz-import -q --stiffness K.mtx --mass M.mtx --dofs dofs \
+        --bulk column.bdf "$@"
+}
+expect 1 'has 33 rows' bare --geometric-stiffness short.mtx@x -o no.h5
+expect 1 'the value is not finite' bare --geometric-stiffness nan.mtx@x -o no.h5
+expect 1 'unsymmetric by' bare --geometric-stiffness lopsided.mtx@x -o no.h5
+expect 1 "there are two loads 'x'" bare --geometric-stiffness tip.mtx@x \
+    --geometric-stiffness spin.mtx@x -o no.h5
+expect 1 "holds '/'" bare --geometric-stiffness tip.mtx@a/b -o no.h5
+expect 0 '' bare --geometric-stiffness zero.mtx@nothing \
+    --geometric-stiffness 'tip.mtx@wind from the left' \
+    --geometric-stiffness seven.mtx@rounded -o odd.h5
+json 0 ritz-check odd.h5 --load 'wind from the left=1.5'
+holds '  nothing, names with blanks and seven digits are taken' '
+    (lambda c: c["buckling:nothing"] is None
+     and c["buckling-reversed:nothing"] is None
+     and abs(c["buckling:wind from the left"] - 2.4674021) < 5e-8
+     and abs(c["buckling:rounded"] - 2.4674021) < 1e-4)(
+        {c["name"]: c["value"] for c in j["checks"]})'
+
 # --- a reduced column ----------------------------------------------------------
 
 ritz-basis -q craig-bampton --modes 6 column.h5 -o basis.h5
