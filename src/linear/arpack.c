@@ -3,7 +3,7 @@
  *
  *     F^-1 A x = nu x   in the inner product of B
  *
- *     modes      A = B = M, F of K - sigma M:  lambda = sigma + 1 / nu, ARPACK's
+ *     modes      A = B = M, F of K - sigma M: lambda = sigma + 1 / nu, ARPACK's
  *                mode 3. M may be singular: every vector starts in the range of
  *                the operator and stays there
  *     two ends   F of B:  nu = theta of A x = theta B x, ARPACK's mode 2, where
@@ -58,9 +58,10 @@ static void lanczos_free(lanczos *L)
 /* y := A x, which may be one and the same. */
 static ritz_status multiply(const ritz_sparse *A, double *x, double *y)
 {
-    ritz_dense X = {A->ncol, 1, x};
+    ritz_dense X = {A->ncol, 1, NULL};
     RITZ_OWN(ritz_dense) Y = {0};
 
+    X.val = x;
     RITZ_CHECK(ritz_sparse_mul(A, &X, &Y));
     memcpy(y, Y.val, (size_t)A->nrow * sizeof *y);
     return RITZ_OK;
