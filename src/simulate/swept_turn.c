@@ -15,7 +15,7 @@
 
 #include <string.h>
 
-enum { BESIDE = 32 };
+static const int64_t beside = 32;
 
 /* Values at a knot one turn further, or one turn back. */
 static ritz_status turn_values(const ritz_swept_model *m, bool back,
@@ -53,17 +53,17 @@ static ritz_status continue_values(const ritz_swept_model *m, int64_t i,
     return RITZ_OK;
 }
 
-/* The knots with BESIDE more on either side, and their spline. */
+/* The knots with beside more on either side, and their spline. */
 static ritz_status make_wider(const ritz_swept_model *m, ritz_swept_model *out)
 {
     out->order = m->order;
-    out->count = m->count + 2 * BESIDE;
+    out->count = m->count + 2 * beside;
     out->spacing = m->spacing;
     RITZ_CHECK(ritz_dense_new(m->F.nrow, out->count * m->order, &out->F));
     for (int64_t k = 0; k < out->count; k++) {
         RITZ_OWN(ritz_dense) F = {0};
 
-        RITZ_CHECK(continue_values(m, k - BESIDE, &F));
+        RITZ_CHECK(continue_values(m, k - beside, &F));
         ritz_dense_put(&F, 0, k * m->order, &out->F);
     }
     return ritz_swept_bend(out);
@@ -77,8 +77,8 @@ ritz_status ritz_swept_bend_around(ritz_swept_model *m)
 
     RITZ_CHECK(make_wider(m, &wider));
     RITZ_CHECK(
-        ritz_dense_block(&wider.F, 0, m->F.nrow, BESIDE * r, m->count * r, &F));
-    RITZ_CHECK(ritz_dense_block(&wider.bend, 0, m->F.nrow, BESIDE * r,
+        ritz_dense_block(&wider.F, 0, m->F.nrow, beside * r, m->count * r, &F));
+    RITZ_CHECK(ritz_dense_block(&wider.bend, 0, m->F.nrow, beside * r,
                                 m->count * r, &bend));
     ritz_dense_replace(&m->F, &F);
     ritz_dense_replace(&m->bend, &bend);
