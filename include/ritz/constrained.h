@@ -43,7 +43,8 @@ typedef struct ritz_gain {
 typedef struct ritz_gain_scales {
     double base;      /* rad/s: 1 / step, and less where that, added to the
                          highest frequency of the bodies, would make an
-                         explicit integrator unstable */
+                         explicit integrator unstable; NaN where little is
+                         left */
     double step;      /* s */
     double violation; /* |c| and |c'| at the start, where c = W q with */
     double rate;      /* W M^-1 W' = I                                 */
@@ -66,6 +67,8 @@ typedef struct ritz_stabilisation {
     ritz_gain gain[RITZ_MOST_GAINS];   /* unused ones have no name */
     const ritz_integrator *integrator; /* used where `modal` is requested;
                                           NULL: the method is an integrator */
+    /** Set the parameters that are NaN. Those that are given may decide about
+     * the others. */
     void (*choose)(const ritz_gain_scales *scales, double *gain);
     ritz_status (*terms)(const double *gain, struct ritz_stabiliser *out);
 } ritz_stabilisation;

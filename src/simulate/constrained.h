@@ -17,6 +17,8 @@
 
 #include <ritz/constrained.h>
 
+#include <math.h>
+
 typedef struct ritz_linked {
     ritz_motion motion; /* of the unjoined bodies in coordinates x, whose M = I
                            is not stored; an impulse acts on the joined ones */
@@ -33,6 +35,13 @@ typedef struct ritz_linked {
     int64_t num_redundant;
     int64_t *redundant;
 } ritz_linked;
+
+/** Set a parameter that is not given, which is NaN. */
+static inline void ritz_gain_choose(double *gain, double value)
+{
+    if (isnan(*gain))
+        *gain = value;
+}
 
 ritz_status ritz_linked_new(const ritz_unjoined *bodies, ritz_linked *out);
 void ritz_linked_free(ritz_linked *joined);

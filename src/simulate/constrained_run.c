@@ -158,28 +158,23 @@ static ritz_status find_terms(const ritz_linked *j,
                                .step = request->step};
     const double most = RITZ_GAIN_ROOM * 2.0 / request->step;
     const double room = fmax(most * most - j->unjoined, 0.0);
-    double chosen[RITZ_MOST_GAINS] = {0.0};
 
     if (request->integrator->is_explicit)
         scales.base = fmin(scales.base, sqrt(room));
+    if (scales.base < RITZ_GAIN_LEAST / request->step)
+        scales.base = nan("");
     RITZ_CHECK(measure_start(j, request, &scales));
+    memcpy(gain, how->gain, sizeof how->gain);
     if (how->method->choose)
-        how->method->choose(&scales, chosen);
-    for (int k = 0; k < RITZ_MOST_GAINS; k++) {
-        RITZ_REFUSE_IF(how->method->gain[k].name && isnan(how->gain[k]) &&
-                           scales.base < RITZ_GAIN_LEAST / request->step,
-                       RITZ_ERR_ARGUMENT,
-                       "the highest frequency of the bodies, %.6g Hz, leaves "
-                       "'%s' of %s no room at a step of %g s: take a smaller "
-                       "step, or give it",
-                       sqrt(j->unjoined) / (2.0 * RITZ_PI),
-                       how->method->gain[k].name, how->method->name,
-                       request->step);
-        gain[k] = isnan(how->gain[k]) ? chosen[k] : how->gain[k];
-    }
-    if (how->method == &ritz_stabilisation_sliding_mode &&
-        isnan(how->gain[2])) /* the layer depends on `switch` */
-        gain[2] = gain[1] * request->step;
+        how->method->choose(&scales, gain);
+    for (int k = 0; k < RITZ_MOST_GAINS; k++)
+        RITZ_REFUSE_IF(
+            how->method->gain[k].name && isnan(gain[k]), RITZ_ERR_ARGUMENT,
+            "the highest frequency of the bodies, %.6g Hz, leaves "
+            "'%s' of %s no room at a step of %g s: take a smaller "
+            "step, or give it",
+            sqrt(j->unjoined) / (2.0 * RITZ_PI), how->method->gain[k].name,
+            how->method->name, request->step);
     RITZ_CHECK_IN(how->method->name, how->method->terms(gain, terms));
     RITZ_REFUSE_IF(!isfinite(terms->stiffness) || !isfinite(terms->damping) ||
                        !isfinite(terms->stiffest),

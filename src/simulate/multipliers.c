@@ -42,9 +42,11 @@ const ritz_stabilisation ritz_stabilisation_none = {
     .terms = find_none,
 };
 
+/* Violations are damped critically if both are the same. */
 static void choose_baumgarte(const ritz_gain_scales *scales, double *gain)
 {
-    gain[0] = gain[1] = scales->base;
+    ritz_gain_choose(&gain[0], isnan(gain[1]) ? scales->base : gain[1]);
+    ritz_gain_choose(&gain[1], gain[0]);
 }
 
 static ritz_status find_baumgarte(const double *gain, ritz_stabiliser *out)
@@ -66,8 +68,8 @@ const ritz_stabilisation ritz_stabilisation_baumgarte = {
     .fails = "a violation at the start takes about 1 / beta to decay, and the "
              "forces that remove it do work",
     .reference = "Baumgarte1972",
-    .gain = {{"alpha", "1/s", "damping of violations [that of 1 / step]"},
-             {"beta", "1/s", "frequency of violations [1 / step]"}},
+    .gain = {{"alpha", "1/s", "damping of violations [beta]"},
+             {"beta", "1/s", "frequency of violations [alpha; 1 / step]"}},
     .integrator = &ritz_integrator_trapezoidal,
     .choose = choose_baumgarte,
     .terms = find_baumgarte,
@@ -75,10 +77,10 @@ const ritz_stabilisation ritz_stabilisation_baumgarte = {
 
 static void choose_sliding(const ritz_gain_scales *scales, double *gain)
 {
-    gain[0] = 0.5 * scales->base;
-    gain[1] =
-        (scales->rate + gain[0] * scales->violation) / (10.0 * scales->step);
-    gain[2] = gain[1] * scales->step;
+    ritz_gain_choose(&gain[0], 0.5 * scales->base);
+    ritz_gain_choose(&gain[1], (scales->rate + gain[0] * scales->violation) /
+                                   (10.0 * scales->step));
+    ritz_gain_choose(&gain[2], gain[1] * scales->step);
 }
 
 /* own: surface, switch, layer */

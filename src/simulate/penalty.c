@@ -27,9 +27,9 @@
 
 static void choose_penalty(const ritz_gain_scales *scales, double *gain)
 {
-    gain[0] = scales->base / (2.0 * RITZ_PI);
-    gain[1] = 1.0;
-    gain[2] = 0.0;
+    ritz_gain_choose(&gain[0], scales->base / (2.0 * RITZ_PI));
+    ritz_gain_choose(&gain[1], 1.0);
+    ritz_gain_choose(&gain[2], 0.0);
 }
 
 static ritz_status find_penalty(const double *gain, ritz_stabiliser *out)
@@ -66,13 +66,16 @@ const ritz_stabilisation ritz_stabilisation_penalty = {
     .terms = find_penalty,
 };
 
+/* A spring w that a force f loads at once has rates of up to f / w. There the
+   coefficient |S| / smax is the critical one, 2 w. */
 static void choose_hybrid(const ritz_gain_scales *scales, double *gain)
 {
-    const double w = scales->base;
+    double w = 0.0;
 
-    gain[0] = w / (2.0 * RITZ_PI);
-    gain[1] = 1.0;
-    gain[2] = w > 0.0 ? scales->force / (2.0 * w * w) : 0.0;
+    ritz_gain_choose(&gain[0], scales->base / (2.0 * RITZ_PI));
+    ritz_gain_choose(&gain[1], 1.0);
+    w = 2.0 * RITZ_PI * gain[0];
+    ritz_gain_choose(&gain[2], w > 0.0 ? scales->force / (2.0 * w * w) : 0.0);
 }
 
 /* own: surface, smax */
@@ -117,9 +120,8 @@ const ritz_stabilisation ritz_stabilisation_hybrid = {
              {"surface", "1/s",
               "weight of c in the coefficient [1, as in the paper]"},
              {"smax", "of c",
-              "the coefficient is 1/s where |c' + surface c| "
-              "is smax/s [critical at the largest force that "
-              "inputs and start suggest]"}},
+              "the coefficient is 1/s where |c' + surface c| is smax/s "
+              "[critical at the largest force of inputs and start]"}},
     .integrator = &ritz_integrator_trapezoidal,
     .choose = choose_hybrid,
     .terms = find_hybrid,

@@ -670,41 +670,6 @@ static void a_step_beyond_the_limit_is_refused_or_seen_to_fail(void **state)
                  "the highest frequency, 1.96183 Hz, limits it");
 }
 
-/* Default parameters give a stable run at every step for which they exist. */
-static void default_parameters_fit_the_step(void **state)
-{
-    RITZ_OWN(joined) j = {0};
-
-    (void)state;
-    assert_ok(joined_new(true, &j));
-    for (const ritz_stabilisation *const *m = ritz_stabilisations; *m; m++)
-        for (int i = 0; i < 3; i++)
-            for (int k = 0; k < 4; k++) {
-                const double h = 0.1 * pow(0.25, k);
-                ritz_simulation_request request = asking(all[i], h);
-                RITZ_OWN(ritz_simulation) s = {0};
-
-                request.x0 = off_x;
-                request.seconds = 300.0 * h;
-                assert_ok(run(&j, (*m)->name, &request, &s));
-                assert_true(last_diagnosis(&s, VIOLATION) < 0.05);
-            }
-}
-
-static void without_a_stable_default_a_run_is_refused(void **state)
-{
-    const ritz_simulation_request request =
-        asking(&ritz_integrator_central_difference, 0.14);
-    RITZ_OWN(joined) j = {0};
-    RITZ_OWN(ritz_simulation) s = {0};
-
-    (void)state;
-    assert_ok(joined_new(true, &j));
-    assert_fails(run(&j, "baumgarte:alpha=1", &request, &s), RITZ_ERR_ARGUMENT,
-                 "leaves 'beta' of baumgarte no room at a step of 0.14 s");
-    assert_ok(run(&j, "baumgarte:alpha=1,beta=1", &request, &s));
-}
-
 static void an_impulse_moves_the_joined_bodies(void **state)
 {
     static const ritz_signal hit = {.kind = RITZ_SIGNAL_IMPULSE,
@@ -900,8 +865,6 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(the_highest_frequency_is_reported),
     cmocka_unit_test(springs_that_a_step_cannot_resolve_are_reported),
     cmocka_unit_test(a_step_beyond_the_limit_is_refused_or_seen_to_fail),
-    cmocka_unit_test(default_parameters_fit_the_step),
-    cmocka_unit_test(without_a_stable_default_a_run_is_refused),
     cmocka_unit_test(an_impulse_moves_the_joined_bodies),
     cmocka_unit_test(a_run_that_ended_early_is_continued_bit_for_bit),
     cmocka_unit_test(unknown_words_are_refused_by_name),
