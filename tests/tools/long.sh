@@ -61,6 +61,53 @@ expect 0 'time response' $run
 works '  but not what another command had left' test -s whole.h5.interrupted
 long run '--checkpoint run.ck'
 
+# --- a checkpoint that cannot be written ---------------------------------------
+
+mkdir gone
+long run '--checkpoint gone/run.ck'
+expect 1 "is in 'run.h5.interrupted'; there is no checkpoint of it: gone" \
+    at_step away:gone,INT simulation $run
+cp log said
+mkdir gone out
+works '  what to copy is said' \
+    grep -q "if you copy 'run.h5.interrupted' to 'gone/run.ck'" said
+cp run.h5.interrupted gone/run.ck
+expect 0 'time response' $run
+same '  what is kept continues as a checkpoint' run.h5
+works '  and is gone in the end' test ! -e run.h5.interrupted -a ! -e gone/run.ck
+
+set -- $run -o out/run.h5
+expect 1 "nor can the checkpoint be written to 'gone/run.ck'" \
+    at_step away:out,away:gone,INT simulation "$@"
+mkdir gone out
+expect 1 "; the same command continues the run from 'gone/run.ck'" \
+    at_step away:out,INT simulation "$@"
+mkdir out
+expect 0 'time response' "$@"
+same '  and it does' out/run.h5
+
+# Checkpoints are written every half minute: of a clock that a library makes
+# faster. Sanitizers must be loaded before it, and their builds have none.
+clock=$bin/../tests/libritz_clock.so
+if [ -f "$clock" ]; then
+    rm run.h5
+    expect 0 'warning: the run goes on without a new checkpoint' \
+        at_step away:gone simulation env "LD_PRELOAD=$clock" $run
+    cp log said
+    works '  once' test "$(grep -c 'without a new checkpoint' said)" = 1
+    same '  to its end' run.h5
+
+    # that the next ones are written is seen where the output cannot be
+    mkdir gone
+    expect 1 "the same command continues the run from 'gone/run.ck'" at_step \
+        away:gone,away:out simulation + back:gone 'without a new' \
+        env "LD_PRELOAD=$clock" "$@"
+    mkdir out
+    expect 0 'time response' "$@"
+    same '  and it does' out/run.h5
+fi
+long run '--checkpoint run.ck'
+
 # --- files that are not a checkpoint of the run -------------------------------
 
 expect 1 "the same command continues it" at_step INT simulation $run

@@ -49,7 +49,8 @@ expect() {
 }
 
 # at_step SIGNAL STEP COMMAND...: the command gets the signal when it shows the
-# step of its work; its status is 128 + N if signal N ends it.
+# step of its work; its status is 128 + N if signal N ends it. at_step.py has
+# other actions.
 at_step() { /usr/bin/python3 -s "$here/at_step.py" "$@"; }
 
 # holds NAME PYTHON: the expression is true of j, the JSON object in log.json.

@@ -287,7 +287,7 @@ static ritz_status simulate_response(simulation_task *d)
                                    : simulation_spins(d) ? simulation_spin
                                                          : simulate_model,
                                    s));
-    RITZ_CHECK(describe_output(run, &made));
+    RITZ_CHECK(simulation_name_checkpoint(d, describe_output(run, &made)));
     if (given->step == 0.0)
         sink_field(run, "accurate to", "error",
                    "%.1e of each output's largest, by half the step",

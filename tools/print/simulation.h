@@ -85,7 +85,8 @@ ritz_status simulation_prepare_loop(simulation_task *task);
 
 /**
  * Carry out a run. With --checkpoint, continue from the checkpoint if it
- * exists, and write it from time to time.
+ * exists, and write it from time to time. If it cannot be written, the run goes
+ * on with a warning.
  *
  * @return RITZ_ERR_CONVERGENCE after a signal, with the run until then in
  *         OUTPUT.interrupted; RITZ_ERR_ARGUMENT if the checkpoint is of another
@@ -95,6 +96,11 @@ ritz_status simulation_long_run(simulation_task *task,
                                 ritz_simulation_request *request,
                                 simulation_function *simulate,
                                 ritz_simulation *out);
+
+/** Add to the sentence of a failure that the same command continues the run
+ * from its checkpoint, if there is one. */
+ritz_status simulation_name_checkpoint(const simulation_task *task,
+                                       ritz_status status);
 
 /* Switched reduced models. */
 bool simulation_switched_asked(const simulation_options *given);

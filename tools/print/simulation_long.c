@@ -6,6 +6,7 @@
 #include "print/simulation.h"
 
 #include "base/draft.h"
+#include "base/text.h"
 
 #include <string.h>
 #include <unistd.h>
@@ -91,33 +92,98 @@ static void describe_end(const ritz_simulation_request *request,
              s->state[0] * request->step, request->seconds);
 }
 
-static ritz_status write_checkpoint(cli_run *run, const char *path,
+static ritz_status write_checkpoint(simulation_task *task,
                                     const ritz_simulation_request *request,
                                     const ritz_simulation *s)
 {
     char what[RITZ_NAME_SIZE];
-    ritz_stamp stamp = *cli_stamp(run);
+    ritz_stamp stamp = *cli_stamp(task->run);
 
     describe_end(request, s, what);
     stamp.interrupted = what;
     stamp.now = true;
-    return ritz_context(ritz_container_write_simulation(path, s, &stamp), path);
+    return ritz_container_write_simulation(task->given->checkpoint, s, &stamp);
 }
 
-/* After a signal, write the run until then as OUTPUT.interrupted. */
-static ritz_status keep_rest(cli_run *run, const char *checkpoint,
+/* After the sentence of a failure, say more of a file. */
+static ritz_status add_sentence(ritz_status status, const char *more,
+                                const char *path)
+{
+    char why[RITZ_MESSAGE_SIZE];
+
+    snprintf(why, sizeof why, "%s", ritz_error_message());
+    return ritz_fail(status, "%s; %s '%s'", why, more, path);
+}
+
+ritz_status simulation_name_checkpoint(const simulation_task *task,
+                                       ritz_status status)
+{
+    const char *path = task->given->checkpoint;
+
+    if (status == RITZ_OK || !path || access(path, F_OK) != 0)
+        return status;
+    return add_sentence(status, "the same command continues the run from",
+                        path);
+}
+
+/* The run is in OUTPUT.interrupted. `fault` is why it is not in the file of
+   --checkpoint, "" if it is. */
+static ritz_status tell_end(const simulation_task *task, const char *fault,
+                            const char *what)
+{
+    const char *checkpoint = task->given->checkpoint;
+    const char *kept = task->run->output;
+
+    RITZ_REFUSE_IF(!checkpoint, RITZ_ERR_CONVERGENCE,
+                   "interrupted: %s, is in '%s'", what, kept);
+    RITZ_REFUSE_IF(*fault, RITZ_ERR_CONVERGENCE,
+                   "interrupted: %s, is in '%s'; there is no checkpoint of it: "
+                   "%s; the same command continues it if you copy '%s' to '%s'",
+                   what, kept, fault, kept, checkpoint);
+    return ritz_fail(RITZ_ERR_CONVERGENCE,
+                     "interrupted: %s, is in '%s'; the same command continues "
+                     "it from '%s'",
+                     what, kept, checkpoint);
+}
+
+/* After a signal, write the run until then as OUTPUT.interrupted, whether or
+   not a checkpoint could be written. */
+static ritz_status keep_rest(simulation_task *task, const char *fault,
                              const ritz_simulation_request *request,
                              const ritz_simulation *s)
 {
+    cli_run *run = task->run;
     char what[RITZ_NAME_SIZE];
+    ritz_status status = RITZ_OK;
 
     describe_end(request, s, what);
     RITZ_CHECK(cli_divert(run, what));
-    RITZ_CHECK(ritz_container_write_simulation(run->output, s, cli_stamp(run)));
-    return ritz_fail(RITZ_ERR_CONVERGENCE, "interrupted: %s, is in '%s'%s%s%s",
-                     what, run->output,
-                     checkpoint ? "; the same command continues it from '" : "",
-                     checkpoint ? checkpoint : "", checkpoint ? "'" : "");
+    status = ritz_container_write_simulation(run->output, s, cli_stamp(run));
+    if (status == RITZ_OK)
+        return tell_end(task, fault, what);
+    if (*fault)
+        status = add_sentence(status, "nor can the checkpoint be written to",
+                              task->given->checkpoint);
+    return simulation_name_checkpoint(task, status);
+}
+
+/* Write a checkpoint. If that fails the run goes on, and why is in `fault`. */
+static void try_checkpoint(simulation_task *task,
+                           const ritz_simulation_request *request,
+                           const ritz_simulation *s,
+                           char fault[RITZ_MESSAGE_SIZE])
+{
+    const bool first = !*fault;
+
+    *fault = '\0';
+    if (write_checkpoint(task, request, s) == RITZ_OK)
+        return;
+    snprintf(fault, RITZ_MESSAGE_SIZE, "%s", ritz_error_message());
+    if (first && !cli_interrupted())
+        cli_warn(task->run,
+                 "the run goes on without a new checkpoint, and the next one "
+                 "is tried in due time: %s",
+                 fault);
 }
 
 ritz_status simulation_long_run(simulation_task *task,
@@ -125,12 +191,13 @@ ritz_status simulation_long_run(simulation_task *task,
                                 simulation_function *simulate,
                                 ritz_simulation *out)
 {
-    cli_run *run = task->run;
     const char *checkpoint = task->given->checkpoint;
+    char fault[RITZ_MESSAGE_SIZE] = "";
     RITZ_OWN(ritz_simulation) part = {0};
 
     if (checkpoint)
-        RITZ_CHECK_IN("--checkpoint", read_checkpoint(run, checkpoint, &part));
+        RITZ_CHECK_IN("--checkpoint",
+                      read_checkpoint(task->run, checkpoint, &part));
     cli_interruptible();
     while (true) {
         run_watch watch = {.keeps = checkpoint, .began = cli_clock()};
@@ -146,10 +213,9 @@ ritz_status simulation_long_run(simulation_task *task,
         if (part.num_state == 0)
             break;
         if (checkpoint)
-            RITZ_CHECK_IN("--checkpoint",
-                          write_checkpoint(run, checkpoint, request, &part));
+            try_checkpoint(task, request, &part, fault);
         if (cli_interrupted())
-            return keep_rest(run, checkpoint, request, &part);
+            return keep_rest(task, fault, request, &part);
     }
     (void)cli_uninterruptible();
     RITZ_MOVE(*out, part);
