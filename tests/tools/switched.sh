@@ -39,8 +39,28 @@ ritz-simulate -q $turn turn.h5 --damping 'rayleigh 10 0' --up-to-hz 1e6 \
 expect 0 '' ritz-chart switched full.h5 switched.h5 -o switched.svg
 expect 0 'switched.h5: 6' cat switched.svg
 expect 1 'the full model first' ritz-chart switched full.h5 -o x.svg
-expect 1 "'plane-d4.h5' has other times" ritz-chart switched full.h5 \
+expect 1 "'plane-d4.h5' has no output 'y'" ritz-chart switched full.h5 \
     plane-d4.h5 -o x.svg
+
+# Of a run of half the time, as an interrupted one is, and of one at every step
+# the errors are those at the times that both have.
+for run in half few; do
+    every=20
+    [ "$run" = few ] || every=1
+    ritz-simulate -q $turn turn.h5 --damping 'rayleigh 10 0' --switched \
+        basis.h5 --switch-interval 0.02 --indicator 0.999999999 --share-of \
+        library --look-ahead --seconds 4 --every $every -o $run.h5
+    ritz-chart -q switched full.h5 $run.h5 -o $run.svg
+    sed -n "s/.*$run.h5: \([^<]*\).*/\1/p" $run.svg | head -1 >$run.txt
+done
+works 'the errors of a part of the times are charted' cmp half.txt few.txt
+works '  for what there is' grep -q 'vectors, error' half.txt
+expect 0 '' ritz-chart switched half.h5 switched.h5 few.h5 -o x.svg
+rm x.svg
+ritz-simulate -q turn.h5 --seconds 8 --step 0.003 --up-to-hz 1e6 \
+    --input along=step -o other.h5
+expect 1 "'other.h5' has other times than the first run" ritz-chart switched \
+    full.h5 other.h5 -o x.svg
 
 json 0 ritz-simulate $turn turn.h5 --damping 'rayleigh 10 0' \
     --switched modes:6 --switch-interval 0.02 --indicator 0.9 --jump project \

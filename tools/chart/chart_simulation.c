@@ -174,6 +174,7 @@ static ritz_status draw_runs(const chart_sources *sources, runs *all,
                              const char *title, const char *description)
 {
     const ritz_simulation *first = &sources->file->model.simulation;
+    double last = 0.0; /* of all runs, some of which may be interrupted */
     picture *p = all->picture;
     chart_range y[MOST_OUTPUTS];
     double spans[MOST_OUTPUTS];
@@ -186,10 +187,11 @@ static ritz_status draw_runs(const chart_sources *sources, runs *all,
     fprintf(p->table.file,
             "output\tsimulation\tleast\tmost\tlast\tintegrator\n");
     put_lines(all, y, spans);
+    for (int64_t w = 0; w < all->count; w++)
+        last = fmax(last, all->run[w]->seconds[all->run[w]->count - 1]);
     fprintf(p->given.file,
             "outputs = %ld\nruns = %ld\nx_low = %.9g\nx_high = %.9g\n",
-            all->num_outputs, all->count, first->seconds[0],
-            first->seconds[first->count - 1]);
+            all->num_outputs, all->count, first->seconds[0], last);
     picture_give_texts(p, "title", all->num_outputs,
                        *series_of(all, first).name,
                        sizeof *series_of(all, first).name);

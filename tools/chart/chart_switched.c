@@ -15,11 +15,13 @@ enum {
     HIGH = 440,
 };
 
-/* A run, and its error at each time. */
+/* A run, and its error at each time that it has in common with the first. */
 typedef struct run_errors {
     const char *name;
     const ritz_simulation *run;
     int64_t vectors;    /* number of the diagnostic; -1: `order` at all times */
+    int64_t count;      /* common times */
+    int64_t *at, *of;   /* count: their numbers in this run and in the first */
     double *error;      /* count: largest error of all outputs, each relative
                          to the largest value of its output */
     double worst, mean; /* largest error; mean number of vectors */
@@ -32,31 +34,48 @@ typedef struct switched_runs {
 
 static void switched_runs_free(switched_runs *all)
 {
-    for (int64_t w = 0; w < all->count; w++)
+    for (int64_t w = 0; w < all->count; w++) {
+        RITZ_FREE(all->run[w].at);
+        RITZ_FREE(all->run[w].of);
         RITZ_FREE(all->run[w].error);
+    }
 }
 
 static double vectors_at(const run_errors *r, int64_t k)
 {
     const ritz_simulation *s = r->run;
 
-    return r->vectors < 0 ? (double)s->order
-                          : s->diagnosis[k * s->num_diagnostics + r->vectors];
+    return r->vectors < 0
+               ? (double)s->order
+               : s->diagnosis[r->at[k] * s->num_diagnostics + r->vectors];
 }
 
-static ritz_status check_times(const chart_file *file,
-                               const ritz_simulation *full)
+/* Find the common times of two runs. Until the shorter one ends, as where it
+   was interrupted, one must have all times of the other, which may have been
+   written at every few steps. */
+static ritz_status find_times(const chart_file *file,
+                              const ritz_simulation *full, run_errors *r)
 {
-    const ritz_simulation *s = &file->model.simulation;
-    bool same = s->count == full->count;
+    const ritz_simulation *s = r->run;
+    const double near = RITZ_SAME * full->seconds[full->count - 1];
+    int64_t k = 0, i = 0;
 
-    for (int64_t k = 0; same && k < s->count; k++)
-        same = fabs(s->seconds[k] - full->seconds[k]) <=
-               RITZ_SAME * full->seconds[full->count - 1];
-    RITZ_REFUSE_IF(!same, RITZ_ERR_ARGUMENT,
-                   "'%s' has other times than the first run", file->path);
-    return chart_check_names(file->path, "output", s->num_outputs, s->output,
-                             full->num_outputs, full->output);
+    RITZ_CHECK_NEW(r->at, s->count);
+    RITZ_CHECK_NEW(r->of, s->count);
+    while (k < s->count && i < full->count) {
+        const double off = s->seconds[k] - full->seconds[i];
+
+        if (fabs(off) <= near) {
+            r->at[r->count] = k;
+            r->of[r->count++] = i;
+        }
+        k += off <= near;
+        i += off >= -near;
+    }
+    RITZ_REFUSE_IF(r->count < 2 || (r->count < k && r->count < i),
+                   RITZ_ERR_ARGUMENT, "'%s' has other times than the first run",
+                   file->path);
+    return RITZ_OK;
 }
 
 /* Raise the errors to those of an output. */
@@ -69,32 +88,35 @@ static void add_output(const ritz_simulation *full, int64_t i, run_errors *r)
 
     for (int64_t k = 0; k < full->count; k++)
         size = fmax(size, fabs(full->y[k * full->num_outputs + i]));
-    for (int64_t k = 0; size > 0.0 && k < full->count; k++)
+    for (int64_t k = 0; size > 0.0 && k < r->count; k++)
         r->error[k] =
-            fmax(r->error[k], fabs(s->y[k * s->num_outputs + other] -
-                                   full->y[k * full->num_outputs + i]) /
+            fmax(r->error[k], fabs(s->y[r->at[k] * s->num_outputs + other] -
+                                   full->y[r->of[k] * full->num_outputs + i]) /
                                   size);
 }
 
 static ritz_status take_run(const chart_file *file, const ritz_simulation *full,
                             switched_runs *all)
 {
+    const ritz_simulation *s = &file->model.simulation;
     run_errors *r = &all->run[all->count];
 
     RITZ_REFUSE_IF(all->count == MOST_RUNS, RITZ_ERR_ARGUMENT,
                    "more than %d runs cannot be told apart", (int)MOST_RUNS);
-    RITZ_CHECK(check_times(file, full));
-    *r = (run_errors){.name = ritz_path_name(file->path),
-                      .run = &file->model.simulation};
-    RITZ_CHECK_NEW(r->error, full->count);
+    RITZ_REFUSE_IF(s->count < 2, RITZ_ERR_ARGUMENT,
+                   "'%s' has no output over time", file->path);
+    RITZ_CHECK(chart_check_names(file->path, "output", s->num_outputs,
+                                 s->output, full->num_outputs, full->output));
+    *r = (run_errors){.name = ritz_path_name(file->path), .run = s};
     all->count++;
-    r->vectors =
-        ritz_name_index(r->run->num_diagnostics, r->run->diagnostic, "vectors");
+    RITZ_CHECK(find_times(file, full, r));
+    RITZ_CHECK_NEW(r->error, r->count);
+    r->vectors = ritz_name_index(s->num_diagnostics, s->diagnostic, "vectors");
     for (int64_t i = 0; i < full->num_outputs; i++)
         add_output(full, i, r);
-    for (int64_t k = 1; k < full->count; k++) {
+    for (int64_t k = 1; k < r->count; k++) {
         r->worst = fmax(r->worst, r->error[k]);
-        r->mean += vectors_at(r, k) / (double)(full->count - 1);
+        r->mean += vectors_at(r, k) / (double)(r->count - 1);
     }
     return RITZ_OK;
 }
@@ -104,16 +126,17 @@ static void put_run(const run_errors *r, int64_t w, double floor_value,
                     picture *p)
 {
     const ritz_simulation *s = r->run;
-    const int64_t few = 1 + s->count / MOST_POINTS;
+    const int64_t few = 1 + r->count / MOST_POINTS;
 
-    for (int64_t k = 1; k < s->count; k += few) {
+    for (int64_t k = 1; k < r->count; k += few) {
         int64_t worst = k;
 
-        for (int64_t i = k; i < k + few && i < s->count; i++)
+        for (int64_t i = k; i < k + few && i < r->count; i++)
             if (r->error[i] > r->error[worst])
                 worst = i;
-        fprintf(p->data.file, "%ld\t%.9g\t%g\t%.9g\n", w, s->seconds[worst],
-                vectors_at(r, worst), fmax(r->error[worst], floor_value));
+        fprintf(p->data.file, "%ld\t%.9g\t%g\t%.9g\n", w,
+                s->seconds[r->at[worst]], vectors_at(r, worst),
+                fmax(r->error[worst], floor_value));
     }
     fputc('\n', p->data.file);
     html_line(p->table.file, r->name);
@@ -144,7 +167,7 @@ static ritz_status draw_runs(const switched_runs *all,
 
     for (int64_t w = 0; w < all->count; w++) {
         worst = fmax(worst, all->run[w].worst);
-        for (int64_t k = 1; k < full->count; k++)
+        for (int64_t k = 1; k < all->run[w].count; k++)
             most = fmax(most, vectors_at(&all->run[w], k));
     }
     worst = worst > 0.0 ? worst : 1.0;
