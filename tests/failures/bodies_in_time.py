@@ -45,13 +45,9 @@ outputs:
 
 
 def run(it, *words):
-    """Time, tip and largest multiplier of ritz-simulate, tip positive first."""
+    """Columns of a run of ritz-simulate, tip positive first."""
     it.tool("simulate", "scene.yaml", "--seconds", END, "--step", STEP,
             "--initial", f"mode:1*{START}", *words, "-o", "run.h5")
-    it.tool("export", "--to", "tsv", "run.h5", "-o", "run.tsv", shown=False)
-    lines = (it.folder / "run.tsv").read_text().splitlines()
-    heads = [h.split()[0] for h in lines[0].lstrip("# ").split("\t")]
-    table = np.array([[float(x) for x in line.split()] for line in lines[1:]])
-    tip = table[:, heads.index("tip")]
-    return (table[:, 0], tip * np.sign(tip[0]),
-            table[:, heads.index("multiplier")])
+    found = it.columns("run.h5")
+    found["tip"] *= np.sign(found["tip"][0])
+    return found

@@ -96,6 +96,13 @@ class Failure:
                             f"{out}.h5", shown=False)
         return f"{out}.h5", basis, reduced
 
+    def columns(self, run):
+        """Values of a run over time by name, "seconds" and diagnostics too."""
+        self.tool("export", "--to", "tsv", run, "-o", "run.tsv", shown=False)
+        path = self.folder / "run.tsv"
+        heads = path.read_text().split("\n")[0].lstrip("# ").split("\t")
+        return dict(zip(heads, np.loadtxt(path, ndmin=2).T))
+
     # --- verdicts ---------------------------------------------------------------
 
     def holds(self, true, sentence):

@@ -36,10 +36,8 @@ def simulate(it, basis):
             "--sweep-basis", basis, "--sweep-modes", 8, "--step", 0.005,
             "--every", 20, "--input", "kick=impulse", "-o", "run.h5",
             shown=basis == "switched")
-    it.tool("export", "--to", "tsv", "run.h5", "-o", "run.tsv", shown=False)
-    rows = np.loadtxt(it.folder / "run.tsv")
-    head = (it.folder / "run.tsv").read_text().split("\n")[0].split()[1:]
-    return rows[:, 0], rows[:, [head.index("x"), head.index("y")]]
+    found = it.columns("run.h5")
+    return found["seconds"], np.column_stack([found["x"], found["y"]])
 
 
 def run(it):

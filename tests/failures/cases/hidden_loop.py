@@ -53,10 +53,8 @@ def run(it):
            "-o", "grows.h5")
     size = {}
     for name in "hidden", "grows":
-        it.run("export", "--to", "tsv", f"{name}.h5", "-o", f"{name}.tsv",
-               shown=False)
-        table = np.loadtxt(it.folder / f"{name}.tsv", comments="#")
-        size[name] = table[:, 0], table[:, 2]
+        found = it.columns(f"{name}.h5")
+        size[name] = found["seconds"], found["q"]
     end = np.abs(size["grows"][1][-80:]).max()
     it.right("size by one exponential", end, right, 0.05)
     it.right("size as held", np.abs(size["hidden"][1][-80:]).max(), naive, 0.05)

@@ -2,7 +2,7 @@
 
 A structure that spins is softened by W^2 M within the plane of rotation, since centrifugal forces grow with deflection, and stiffened by the tension that the same forces make. A program whose strains are linear has the first term and not the second. Its blade then loses all stiffness at the rate of its first frequency, where that of the real one only rises: the inconsistent model of [PadillaVonFlotow1992].
 
-Ritz takes geometric stiffness KG of the centrifugal load with the model, and keeps all terms. Asked for the inconsistent model, or without KG, it says what is missing, and at which rate the stiffness stops being positive definite.
+Ritz takes geometric stiffness KG of the centrifugal load with the model, and keeps all terms. Asked for the inconsistent model, or without KG, it names the component and what is missing, and at which rate the stiffness stops being positive definite.
 """
 import numpy as np
 import scipy.linalg as la
@@ -42,6 +42,11 @@ components:
 spin: {axis: [0, 1, 0], rate: %g}
 spin_model: %s
 """
+WITHOUT = """scene: blade
+components:
+  blade: {model: without.h5}
+spin: {axis: [0, 1, 0], rate: %g}
+"""
 
 
 def run(it):
@@ -55,6 +60,9 @@ def run(it):
     component = it.component("blade", model, "--geometric-stiffness",
                              "KG.mtx@spin")
     it.reduce(component, "full")
+    bare = it.component("bare", model)
+    it.reduce(bare, "full", out="without")
+    it.write("without.yaml", WITHOUT % W)
     for name in ("consistent", "inconsistent"):
         it.write(f"{name}.yaml", SCENE % ("reduced.h5", W, name))
     answer = it.tool("assemble", "inconsistent.yaml", "-o", "wrong.h5")
@@ -62,10 +70,16 @@ def run(it):
     it.right("rate at which it fails", answer["stable_rate"], np.sqrt(rest[0]),
              1e-5)
     it.says("unstable", 0, "poles", "wrong.h5")
+    answer = it.tool("assemble", "without.yaml", "-o", "without-spun.h5")
+    it.notes(answer, "component 'blade' has no 'stiffening: {spin_yy: LOAD}'")
+    it.notes(answer, f"above {np.sqrt(rest[0]):.6g} rad/s, where the stiffness")
+    it.right("rate at which it fails without KG", answer["stable_rate"],
+             np.sqrt(rest[0]), 1e-5)
     it.tool("assemble", "consistent.yaml", "-o", "spun.h5")
     answer = it.tool("poles", "spun.h5")
     found = 2 * np.pi * min(p["hertz"] for p in answer["poles"])
     it.right("first frequency at 5 rad/s", found, right, 1e-6)
     it.row(f"{naive:.4g} rad/s, unstable", f"{right:.4g} rad/s",
-           f"{found:.4g} rad/s; without KG a warning that the stiffness is "
-           f"definite up to {np.sqrt(rest[0]):.4g} rad/s alone")
+           f"{found:.4g} rad/s; without KG a warning that names the component "
+           f"and {np.sqrt(rest[0]):.4g} rad/s, up to which the stiffness is "
+           "definite")
