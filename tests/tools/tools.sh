@@ -194,7 +194,7 @@ holds '  estimates its errors' 'len(j["estimates"]) > 0 and j["dofs"] == 7 and
     j["dofs_full"] == 21 and j["frequencies_hz"][0] == 0'
 
 # geometric stiffness goes with K and M
-expect 0 'geometric stiffness of 1 loads is stored' ritz-import \
+expect 0 'geometric stiffness of 1 load is stored' ritz-import \
     --stiffness bar.k.mtx --mass bar.m.mtx --bulk bar.bdf --dofs bar.dofs \
     --port left=1:1 --input push=21:1 --output-at tip=21:1 --units 'm kg s' \
     --geometric-stiffness bar.k.mtx@spin -o stiff.h5
