@@ -57,6 +57,10 @@ works 'the errors of a part of the times are charted' cmp half.txt few.txt
 works '  for what there is' grep -q 'vectors, error' half.txt
 expect 0 '' ritz-chart switched half.h5 switched.h5 few.h5 -o x.svg
 rm x.svg
+ritz-simulate -q $turn turn.h5 --up-to-hz 1e6 --seconds 0.01 --every 1 \
+    -o short.h5
+expect 1 "'short.h5' ends before the second time of" ritz-chart switched \
+    full.h5 short.h5 -o x.svg
 ritz-simulate -q turn.h5 --seconds 8 --step 0.003 --up-to-hz 1e6 \
     --input along=step -o other.h5
 expect 1 "'other.h5' has other times than the first run" ritz-chart switched \

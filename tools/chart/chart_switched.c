@@ -72,8 +72,11 @@ static ritz_status find_times(const chart_file *file,
         k += off <= near;
         i += off >= -near;
     }
-    RITZ_REFUSE_IF(r->count < 2 || (r->count < k && r->count < i),
-                   RITZ_ERR_ARGUMENT, "'%s' has other times than the first run",
+    RITZ_REFUSE_IF(r->count < k && r->count < i, RITZ_ERR_ARGUMENT,
+                   "'%s' has other times than the first run", file->path);
+    RITZ_REFUSE_IF(r->count < 2, RITZ_ERR_ARGUMENT,
+                   "'%s' ends before the second time of the first run, or the "
+                   "first run before its",
                    file->path);
     return RITZ_OK;
 }
