@@ -4,7 +4,7 @@ at_step.py ACTION STEP [+ ACTION STEP]... COMMAND...: run the command with a
 pseudo terminal as standard error, where it shows its progress, and carry out
 the action when the terminal shows the step, then the next one. An action is
 
-    INT, TERM       this signal
+    INT, TERM, HUP  this signal
     away:FOLDER     remove the folder
     back:FOLDER     make it
 
@@ -38,7 +38,7 @@ def main(*words):
         command = command[3:]
     # whoever started the test may ignore them (nohup; a shell in the
     # background), and a tool would go on to ignore them
-    for number in (signal.SIGINT, signal.SIGTERM):
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_DFL)
     here, there = os.openpty()
     run = subprocess.Popen(command, stderr=there)
