@@ -25,7 +25,9 @@
 
 static const char blank[] = " \t\r,;";
 
-enum { SEEN = 512 };
+static const char mark[] = "\xef\xbb\xbf"; /* byte-order mark of UTF-8 */
+
+enum { SEEN = 512, BARE = 3 };
 
 /* What the head says of the columns behind hertz. */
 typedef struct table_columns {
@@ -165,7 +167,9 @@ static ritz_status read_head(char *line, table_columns *c)
     RITZ_CHECK(table_columns_new(strlen(line), c));
     word = strtok_r(line, blank, &place);
     RITZ_REFUSE_IF(!word || strcmp(word, "hertz") != 0, RITZ_ERR_FORMAT,
-                   "the head does not begin with hertz");
+                   "no table of a response: its head begins with '%.40s', not "
+                   "with hertz",
+                   word ? word : "");
     while ((word = strtok_r(NULL, blank, &place)) != NULL) {
         if (strncmp(word, "sigma", 5) == 0 || c->passed > 0)
             c->passed++;
@@ -253,20 +257,52 @@ static char *cut_line(char *line)
     return end ? end + 1 : NULL;
 }
 
+/* Words of the line, and whether the first is a number. */
+static int64_t count_words(const char *line, bool *number)
+{
+    char first[SEEN] = "";
+    double ignored = 0.0;
+    const size_t length = strcspn(line, " \t\r,;\n");
+    int64_t count = 0;
+
+    if (length < sizeof first)
+        memcpy(first, line, length);
+    *number = ritz_text_real(first, &ignored);
+    while (*line != '\0' && *line != '\n') {
+        count++;
+        line += strcspn(line, " \t\r,;\n");
+        line += strspn(line, blank);
+    }
+    return count;
+}
+
 /* The head if the first line is one, else that of three columns. */
 static ritz_status find_columns(char **text, int64_t *number, table_columns *c)
 {
     char bare[] = "hertz real imaginary";
-    char *line = *text + strspn(*text, " \t\r\n");
+    char *line = *text;
+    bool numbers = false;
+    int64_t words = 0;
 
-    for (const char *at = *text; at < line; at++)
-        *number += *at == '\n';
+    if (strncmp(line, mark, sizeof mark - 1) == 0)
+        line += sizeof mark - 1;
+    for (; *line != '\0' && strchr(" \t\r\n", *line); line++)
+        *number += *line == '\n';
+    RITZ_REFUSE_IF(*line == '\0', RITZ_ERR_FORMAT,
+                   "no table of a response: it is empty");
+    words = count_words(line, &numbers);
     *text = line;
-    if (*line != '#')
+    if (numbers) {
+        RITZ_REFUSE_IF(words != BARE, RITZ_ERR_FORMAT,
+                       "line %" PRId64 " has %" PRId64
+                       " columns that no head names: a head begins with hertz, "
+                       "without one there are hertz, real and imaginary part",
+                       *number + 1, words);
         return read_head(bare, c);
+    }
     *text = cut_line(line);
     ++*number;
-    return read_head(line + 1, c);
+    return read_head(line + (*line == '#'), c);
 }
 
 static ritz_status parse_table(char *text, ritz_response *out)
@@ -304,35 +340,18 @@ ritz_status ritz_response_read_table(const char *path, ritz_response *out)
     return ritz_context(parse_table(text, out), path);
 }
 
-/* Three numbers, and no more, in a line. */
-static bool is_bare_row(char *line)
-{
-    double ignored = 0.0;
-    char *place = NULL;
-    int found = 0;
-
-    (void)cut_line(line);
-    for (char *word = strtok_r(line, blank, &place); word;
-         word = strtok_r(NULL, blank, &place), found++)
-        if (!ritz_text_real(word, &ignored))
-            return false;
-    return found == 3;
-}
-
 bool ritz_response_table_seems(const char *path)
 {
     char head[SEEN] = "";
-    char *line = NULL;
     FILE *file = fopen(path, "rb");
+    size_t size = 0;
+    bool read = false;
 
     if (!file)
         return false;
-    head[fread(head, 1, sizeof head - 1, file)] = '\0';
+    size = fread(head, 1, sizeof head, file);
+    read = ferror(file) == 0;
     (void)fclose(file);
-    line = head + strspn(head, " \t\r\n");
-    if (*line != '#')
-        return is_bare_row(line);
-    line += 1 + strspn(line + 1, " \t");
-    return strncmp(line, "hertz", 5) == 0 && line[5] != '\0' &&
-           strchr(" \t,;\r\n", line[5]) != NULL;
+    return read && memchr(head, '\0', size) == NULL &&
+           (unsigned char)head[0] != 0x89; /* the first of HDF5 */
 }

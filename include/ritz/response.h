@@ -212,7 +212,7 @@ ritz_io ritz_response_io(const ritz_response *response);
  * Read a table of text: hertz, and for each channel real and imaginary part, or
  * magnitude and degrees, as its header line says; three columns without a
  * header are hertz, real and imaginary part from u1 to y1. ritz-export --to tsv
- * writes such a table.
+ * writes such a table. The header may be without its '#'.
  *
  * @return RITZ_ERR_FILE; RITZ_ERR_FORMAT with the line, if frequencies do not
  *         ascend, a channel is missing or occurs twice, or a row is no row of
@@ -220,7 +220,7 @@ ritz_io ritz_response_io(const ritz_response *response);
  */
 ritz_status ritz_response_read_table(const char *path, ritz_response *out);
 
-/** Whether a file begins as such a table does. */
+/** Whether a file is text, as such a table is and no container. */
 bool ritz_response_table_seems(const char *path);
 
 /**
@@ -307,7 +307,9 @@ typedef struct ritz_loop {
 
 /**
  * Join by name: each input of the controller is called as an output of the
- * plant, each output as an input of the plant, unless a pair says otherwise.
+ * plant, each output as an input of the plant, unless a pair says otherwise. A
+ * plant and a controller of one input and one output each are joined whatever
+ * their names if those of one of them are u1 and y1, which nobody gave.
  *
  * @param[in] pair  "OUT=IN", as a signal flows: an output of the plant into the
  *                  controller, or one of the controller into the plant

@@ -37,6 +37,10 @@ ritz_status ritz_loop_check(const ritz_loop *loop, const ritz_io *plant,
     return RITZ_OK;
 }
 
+static const char give_names[] =
+    "name the signals of one of them otherwise: --input-names and "
+    "--output-names of ritz-import, |OUT/IN| in the head of a table";
+
 /* Connect a signal, which is possible once only. */
 static ritz_status connect_signal(int64_t *place, int64_t index,
                                   const char *name)
@@ -45,6 +49,25 @@ static ritz_status connect_signal(int64_t *place, int64_t index,
                    "'%s' of the controller is connected twice", name);
     *place = index;
     return RITZ_OK;
+}
+
+/* Whether signals have the names that they get where nobody names them. */
+static bool is_unnamed(const ritz_io *io)
+{
+    return io->num_inputs > 0 && io->num_outputs > 0 &&
+           strcmp(io->input[0], "u1") == 0 && strcmp(io->output[0], "y1") == 0;
+}
+
+static bool is_single(const ritz_io *io)
+{
+    return io->num_inputs == 1 && io->num_outputs == 1;
+}
+
+/* Whether there is one way to join both, and no names that say otherwise. */
+static bool is_obvious(const ritz_io *plant, const ritz_io *controller)
+{
+    return is_single(plant) && is_single(controller) &&
+           (is_unnamed(plant) || is_unnamed(controller));
 }
 
 /*
@@ -58,6 +81,7 @@ static ritz_status connect_pair(const ritz_io *plant, const ritz_io *control,
     const char *in = equals ? equals + 1 : "";
     char out[RITZ_NAME_SIZE] = "";
     int64_t from = -1, to = -1, back_from = -1, back_to = -1;
+    bool both = false;
 
     RITZ_REFUSE_IF(
         !equals || equals == pair || !*in || equals - pair >= RITZ_NAME_SIZE,
@@ -67,11 +91,15 @@ static ritz_status connect_pair(const ritz_io *plant, const ritz_io *control,
     to = ritz_name_index(control->num_inputs, control->input, in);
     back_from = ritz_name_index(control->num_outputs, control->output, out);
     back_to = ritz_name_index(plant->num_inputs, plant->input, in);
-    RITZ_REFUSE_IF(from >= 0 && to >= 0 && back_from >= 0 && back_to >= 0,
-                   RITZ_ERR_ARGUMENT,
+    both = from >= 0 && to >= 0 && back_from >= 0 && back_to >= 0;
+    if (both && is_obvious(plant, control)) {
+        loop->measured[0] = loop->driven[0] = 0;
+        return RITZ_OK;
+    }
+    RITZ_REFUSE_IF(both, RITZ_ERR_ARGUMENT,
                    "'%s' can be read both ways: plant and controller have both "
-                   "names",
-                   pair);
+                   "names; %s",
+                   pair, give_names);
     if (from >= 0 && to >= 0)
         return connect_signal(&loop->measured[to], from, control->input[to]);
     if (back_from >= 0 && back_to >= 0)
@@ -127,8 +155,17 @@ ritz_status ritz_loop_match(const ritz_io *plant, const ritz_io *controller,
         loop.measured[k] = -1;
     for (int64_t k = 0; k < loop.num_driven; k++)
         loop.driven[k] = -1;
+    if (num_pairs == 0 && is_obvious(plant, controller))
+        loop.measured[0] = loop.driven[0] = 0;
     for (int64_t k = 0; k < num_pairs; k++)
         RITZ_CHECK(connect_pair(plant, controller, pair[k], &loop));
+    RITZ_REFUSE_IF(num_pairs == 0 && is_unnamed(plant) &&
+                       is_unnamed(controller) && !is_obvious(plant, controller),
+                   RITZ_ERR_ARGUMENT,
+                   "which signals of plant and controller are joined is not "
+                   "known, both are u1, ... and y1, ...; %s, and --connect "
+                   "OUT=IN joins them",
+                   give_names);
     RITZ_CHECK(connect_equal_names(loop.num_measured, controller->input,
                                    plant->num_outputs, plant->output, "output",
                                    loop.measured));

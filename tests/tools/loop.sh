@@ -132,6 +132,28 @@ printf '1 2 3\n0.5 2 3\n' >back.tsv
 expect 1 'the frequency of line 2 does not ascend' ritz-frf back.tsv -o none.h5
 works 'nothing is written of them' test ! -e none.h5
 
+printf '# rad/s real imaginary\n1 2 3\n2 3 4\n' >other.tsv
+expect 1 "its head begins with 'rad/s', not with hertz" ritz-frf other.tsv \
+    -o none.h5
+: >empty.tsv
+printf '# hertz %s\n1 1 0 1 0\n2 1 0 1 0\n' \
+    're(y1/u1) im(y1/u1) re(y2/u1) im(y2/u1)' >two.tsv
+expect 1 'no table of a response: it is empty' ritz-frf empty.tsv -o none.h5
+
+# --- signals that nobody named ----------------------------------------------------
+
+printf '0.1 1 0\n0.2 1 0\n0.5 1 0\n' >bare.tsv
+for connect in '' '--connect y1=u1'; do
+    # shellcheck disable=SC2086 # words
+    expect 0 '  y1 -> controller u1' ritz-frf bare.tsv --controller damp.h5 \
+        $connect -o bare.h5
+    # shellcheck disable=SC2086 # words
+    expect 0 '  controller y1 -> u1' ritz-simulate damp.h5 --seconds 1 \
+        --step 0.01 --input u1=step --controller damp.h5 $connect -o bare.h5
+done
+expect 1 'which signals of plant and controller are joined is not known' \
+    ritz-frf two.tsv --controller damp.h5 -o none.h5
+
 # --- unreduced plants in time ---------------------------------------------------
 
 for method in trapezoidal generalised-alpha; do

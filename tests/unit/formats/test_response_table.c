@@ -50,12 +50,16 @@ static void columns_are_read_as_their_head_says(void **state)
 
 static void three_columns_are_one_channel(void **state)
 {
-    static const char *const heads[] = {"", "# hertz real imaginary\n",
-                                        "# hertz re(y1/u1) im(y1/u1)\n"};
+    static const char *const heads[] = {"",
+                                        "# hertz real imaginary\n",
+                                        "# hertz re(y1/u1) im(y1/u1)\n",
+                                        "hertz,real,imaginary\r\n",
+                                        "\xef\xbb\xbf# hertz real imaginary\n",
+                                        "\xef\xbb\xbf"};
     char text[128];
 
     (void)state;
-    for (int k = 0; k < 3; k++) {
+    for (size_t k = 0; k < sizeof heads / sizeof *heads; k++) {
         RITZ_OWN(ritz_response) r = {0};
 
         snprintf(text, sizeof text, "%s1 3 4\n2 5 6\n", heads[k]);
@@ -72,7 +76,18 @@ static void what_is_no_table_is_refused(void **state)
     static const struct {
         const char *text, *words;
     } cases[] = {
-        {"# seconds a b\n", "the head does not begin with hertz"},
+        {"# seconds a b\n",
+         "no table of a response: its head begins with 'seconds', not with "
+         "hertz"},
+        {"# Hz re(a/b) im(a/b)\n1 2 3\n", "begins with 'Hz', not with hertz"},
+        {"rad/s real imaginary\n1 2 3\n", "begins with 'rad/s', not with"},
+        {"#\tomega\ta\n", "begins with 'omega', not with hertz"},
+        {"frequency,real,imaginary\n", "begins with 'frequency', not with"},
+        {"scene: a\n", "begins with 'scene:', not with hertz"},
+        {"#\n1 2 3\n", "begins with '', not with hertz"},
+        {"1 2\n3 4\n", "line 1 has 2 columns that no head names"},
+        {"\n1 2 3 4\n", "line 2 has 4 columns that no head names"},
+        {"\xef\xbb\xbf \n", "no table of a response: it is empty"},
         {"# hertz\n1\n2\n", "the head names no channel"},
         {"# hertz |a/b|\n", "the head has '|a/b|' where"},
         {"# hertz re(a/b) im(a/c)\n", "the head has 're(a/b)' where"},
@@ -93,7 +108,8 @@ static void what_is_no_table_is_refused(void **state)
         {"# hertz magnitude degrees\n1 -2 3\n",
          "line 2: a magnitude is negative"},
         {"1 2 3\n", "a response of 1 frequencies is none"},
-        {"", "a response of 0 frequencies is none"},
+        {"# hertz |a/b| degrees\n", "a response of 0 frequencies is none"},
+        {"", "no table of a response: it is empty"},
     };
 
     (void)state;
@@ -105,16 +121,21 @@ static void what_is_no_table_is_refused(void **state)
     }
 }
 
-static void other_files_do_not_seem_tables(void **state)
+static void containers_do_not_seem_tables(void **state)
 {
-    static const char *const texts[] = {"", "scene: a\n", "# hertzian 1\n",
-                                        "1 2\n3 4\n", "%%MatrixMarket\n"};
+    static const char start[] = "\x89HDF\r\n\x1a\n\0\0";
+    const char *path = folder_path("container");
+    FILE *file = fopen(path, "wb");
 
     (void)state;
-    for (size_t k = 0; k < sizeof texts / sizeof *texts; k++)
-        assert_false(
-            ritz_response_table_seems(folder_write("other", texts[k])));
+    assert_non_null(file);
+    assert_int_equal(fwrite(start, 1, sizeof start, file), sizeof start);
+    assert_int_equal(fclose(file), 0);
+    assert_false(ritz_response_table_seems(path));
+    assert_false(ritz_response_table_seems(folder_write("cut", "\x89HDF")));
+    assert_false(ritz_response_table_seems(folder_path("")));
     assert_false(ritz_response_table_seems(folder_path("there is none")));
+    assert_true(ritz_response_table_seems(folder_write("other", "scene: a\n")));
 }
 
 static ritz_status read_bytes(const char *bytes, int64_t size)
@@ -198,7 +219,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(columns_are_read_as_their_head_says),
     cmocka_unit_test(three_columns_are_one_channel),
     cmocka_unit_test(what_is_no_table_is_refused),
-    cmocka_unit_test(other_files_do_not_seem_tables),
+    cmocka_unit_test(containers_do_not_seem_tables),
     cmocka_unit_test(damaged_tables_are_refused_or_read),
     cmocka_unit_test(reading_survives_every_allocation),
     cmocka_unit_test(a_loop_of_measured_responses_is_closed_at_their_points),

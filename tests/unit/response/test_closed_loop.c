@@ -316,6 +316,50 @@ static void loops_without_answer_are_refused(void **state)
 }
 
 /* One resonance: 1 / (2 zeta sqrt(1 - zeta^2)), wherever the points lie. */
+/* Ends of u1, ... and y1, ..., as nobody named them; or of other first names. */
+static ritz_io ends_called(int64_t count, char (*u)[RITZ_NAME_SIZE],
+                           char (*y)[RITZ_NAME_SIZE])
+{
+    return (ritz_io){
+        .num_inputs = count, .num_outputs = count, .input = u, .output = y};
+}
+
+static void
+signals_that_nobody_named_are_joined_if_there_is_one_way(void **state)
+{
+    char u[2][RITZ_NAME_SIZE] = {"u1", "u2"},
+         y[2][RITZ_NAME_SIZE] = {"y1", "y2"};
+    char force[1][RITZ_NAME_SIZE] = {"force"}, tip[1][RITZ_NAME_SIZE] = {"tip"};
+    const ritz_io one = ends_called(1, u, y), two = ends_called(2, u, y),
+                  named = ends_called(1, force, tip);
+    const ritz_io *const pairs[][2] = {
+        {&one, &one}, {&named, &one}, {&one, &named}};
+    const char *const words[] = {"y1=u1", "y1=u1"};
+    RITZ_OWN(ritz_loop) loop = {0};
+
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        assert_ok(ritz_loop_match(pairs[k][0], pairs[k][1], 0, NULL, &loop));
+        assert_int_equal(loop.measured[0], 0);
+        assert_int_equal(loop.driven[0], 0);
+        ritz_loop_free(&loop);
+    }
+    for (int k = 1; k <= 2; k++) {
+        assert_ok(ritz_loop_match(&one, &one, k, words, &loop));
+        assert_int_equal(loop.measured[0] + loop.driven[0], 0);
+        ritz_loop_free(&loop);
+    }
+    assert_fails(ritz_loop_match(&named, &named, 0, NULL, &loop),
+                 RITZ_ERR_ARGUMENT, "the plant has no output 'force'");
+    assert_fails(ritz_loop_match(&two, &two, 0, NULL, &loop), RITZ_ERR_ARGUMENT,
+                 "both are u1, ... and y1, ...; name the signals of one of "
+                 "them otherwise: --input-names and --output-names");
+    assert_fails(ritz_loop_match(&two, &one, 1, words, &loop),
+                 RITZ_ERR_ARGUMENT,
+                 "'y1=u1' can be read both ways: plant and controller have "
+                 "both names; name the signals of one of them otherwise");
+}
+
 static void a_peak_is_found_between_points(void **state)
 {
     const double zeta = 1e-4, w = 2.0 * pi;
@@ -479,6 +523,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(both_ways_close_the_same_loop),
     cmocka_unit_test(sensitivity_is_the_inverse_of_the_return_difference),
     cmocka_unit_test(loops_without_answer_are_refused),
+    cmocka_unit_test(signals_that_nobody_named_are_joined_if_there_is_one_way),
     cmocka_unit_test(a_peak_is_found_between_points),
     cmocka_unit_test(the_peak_of_several_channels_is_the_h_infinity_norm),
     cmocka_unit_test(all_values_are_there_and_descend),
