@@ -201,3 +201,24 @@ ritz-import -q --stiffness upper.k.mtx --mass upper.m.mtx --dofs upper.dofs \
     --bulk bent.bdf --port hub=1 --port tip=7 -o bent.h5
 sed 's/upper\.h5/bent.h5/' free.yaml >bent.yaml
 expect 1 'lie 0.3 apart across the plane xy' ritz-assemble bent.yaml -o none.h5
+
+# --- inertias that a plane model does not have ------------------------------------
+
+ritz-basis full fore.h5 -q -o basis.h5
+ritz-reduce fore.h5 basis.h5 -q -o reduced.h5
+expect 0 '0: not known, without translations across the axis' \
+    ritz-info reduced.h5
+/usr/bin/python3 -s - <<'END'
+import arm, scipy.io, scipy.sparse
+for word, A in zip("km", (x[1] for x in arm.arm())):
+    keep = [i for i in range(len(A)) if i % 3 > 0]
+    scipy.io.mmwrite(f"across.{word}.mtx", scipy.sparse.coo_matrix(
+        A[keep][:, keep]), symmetry="symmetric", precision=17)
+END
+grep -v ' 1$' fore.dofs >across.dofs
+ritz-import -q --stiffness across.k.mtx --mass across.m.mtx \
+    --dofs across.dofs --bulk fore.bdf -o across.h5
+ritz-basis full across.h5 -q -o basis.h5
+ritz-reduce across.h5 basis.h5 -q -o reduced.h5
+expect 0 '0: of a point, or not known, without translations across axes' \
+    ritz-info reduced.h5

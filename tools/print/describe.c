@@ -398,6 +398,22 @@ ritz_status describe_basis(cli_run *run, const ritz_basis *b)
     return RITZ_OK;
 }
 
+/*
+ * Why inertias are 0 that no body of mass has: of a point all are, of a rod one
+ * is and the others are equal, and none is larger than the sum of the others.
+ */
+static const char *doubt_inertia(const ritz_inertia *i)
+{
+    int zeros = 0;
+
+    for (size_t k = 0; k < 3; k++)
+        zeros += i->tensor[4 * k] == 0.0;
+    if (zeros == 3)
+        return "0: of a point, or not known, without translations across axes";
+    return zeros == 2 ? "0: not known, without translations across the axis"
+                      : NULL;
+}
+
 /* Mass, centre and inertia; an empty object if they are not known. */
 static void describe_inertia(cli_run *run, const ritz_inertia *i)
 {
@@ -410,6 +426,8 @@ static void describe_inertia(cli_run *run, const ritz_inertia *i)
             cli_say(run, "  %-14s %14.6g %14.6g %14.6g", k > 0 ? "" : "inertia",
                     i->tensor[3 * k], i->tensor[3 * k + 1],
                     i->tensor[3 * k + 2]);
+        if (doubt_inertia(i))
+            cli_say(run, "  %-14s %s", "", doubt_inertia(i));
         sink_reals(run, "centre", 3, i->centre);
         sink_reals(run, "tensor", 9, i->tensor);
     }
