@@ -314,14 +314,13 @@ static void find_powers(const ritz_march *march, const double *u, swept *s)
     spread_state(march, s->used, s);
     lost = bilinear(&p->D, s->z, s->z);
     power = bilinear(&p->K, s->p, s->o);
-    if (s->terms) {
+    if (s->terms)
         power += inertia_power(s) + bilinear(&p->D, s->p, s->z);
-        for (int64_t j = 0; j < p->B.ncol; j++)
-            power -= u[j] *
-                     ritz_motion_dot(p->B.nrow, ritz_dense_col(&p->B, j), s->p);
-    } else {
+    else
         power += naive_power(march, s);
-    }
+    for (int64_t j = 0; j < p->B.ncol; j++)
+        power -=
+            u[j] * ritz_motion_dot(p->B.nrow, ritz_dense_col(&p->B, j), s->p);
     power += spring_power(march, s, &lost);
     power += ratio_power(march, s, &lost);
     s->power[0] = s->rate[0] * power;

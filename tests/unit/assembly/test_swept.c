@@ -355,7 +355,8 @@ static void a_pendulum_keeps_its_plane_over_whole_turns(void **state)
 
     (void)state;
     assert_ok(make_pendulum(1.0, &m));
-    for (double way = 1.0; way >= -1.0; way -= 2.0) {
+    for (int side = 0; side < 2; side++) {
+        const double way = side == 0 ? 1.0 : -1.0;
         double last = 0.0;
 
         for (int k = 0; k < 3; k++) {
