@@ -118,7 +118,8 @@ static void compare_forms(ritz_model model, const ritz_integrator *integrator)
 /* With no damping, with D that couples modes, and with gyroscopic terms. */
 static void modes_advance_as_full_matrices_do(void **state)
 {
-    static const ritz_integrator *const all[] = {
+    enum { INTEGRATORS = 3 };
+    static const ritz_integrator *const all[INTEGRATORS] = {
         &ritz_integrator_trapezoidal, &ritz_integrator_generalised_alpha,
         &ritz_integrator_central_difference};
 
@@ -131,7 +132,7 @@ static void modes_advance_as_full_matrices_do(void **state)
             ritz_dense_col(&m.D, j)[j + 1] += 4.0;
             ritz_dense_col(&m.D, j + 1)[j] -= 4.0;
         }
-        for (size_t k = 0; k < sizeof all / sizeof *all; k++)
+        for (int k = 0; k < INTEGRATORS; k++)
             compare_forms(m.dense, all[k]);
     }
 }
