@@ -107,6 +107,8 @@ expect 1 '--sweep needs --step' ritz-simulate --sweep clock=0:60:4s \
     --input motor=step scene.yaml -o no.h5
 expect 1 "'rotor.h5' is not a scene: joints of a scene move" ritz-simulate --sweep clock=0:60:4s \
     --step 0.01 --initial mode:7 rotor.h5 -o no.h5
+works 'a beam on a hinge is that in space axes, with its rotary inertia' \
+    /usr/bin/python3 -s "$here/turning.py" "$bin"
 works 'nothing is written where a run is refused' test ! -e no.h5
 
 echo "1..$count"
