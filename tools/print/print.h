@@ -461,6 +461,15 @@ ritz_status tracks_report(cli_run *run, const ritz_stage *stage,
 ritz_status spin_say(cli_run *run, const ritz_stage *stage,
                      const ritz_configuration *at);
 
+/**
+ * Warn of bodies whose inertia invariants are approximate.
+ *
+ * @param[in] turns  bodies that use them; NULL: all
+ * @param[in] terms  what they are used for: "spin"
+ */
+ritz_status spin_warn_of_loss(cli_run *run, const ritz_stage *stage,
+                              const bool *turns, const char *terms);
+
 /** "deg" for a joint that turns, else the length among units such as "kg m
  * s". */
 void settings_unit(const ritz_sweep *sweep, const char *units,

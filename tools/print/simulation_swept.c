@@ -281,6 +281,8 @@ static ritz_status say_start(const simulation_task *d, const ritz_path *path,
     RITZ_CHECK(find_joint(d, &sweep));
     settings_unit(&d->scene.sweep[sweep], d->m.system.units, unit);
     say_path(d, m, path, unit);
+    if (basis->terms && m->G.val)
+        RITZ_CHECK(spin_warn_of_loss(d->run, &d->stage, m->turns, "turning"));
     RITZ_CHECK(say_lost_state(d, m));
     return basis->cut ? say_lost_forces(d, m) : RITZ_OK;
 }

@@ -44,20 +44,22 @@ static ritz_status warn_of_lacks(cli_run *run, const ritz_stage *stage,
     return RITZ_OK;
 }
 
-/* Warn of inertia invariants that are approximate. */
-static ritz_status warn_of_loss(cli_run *run, const ritz_stage *stage)
+ritz_status spin_warn_of_loss(cli_run *run, const ritz_stage *stage,
+                              const bool *turns, const char *terms)
 {
     for (int64_t k = 0; k < stage->count; k++) {
         const ritz_reduced *body = &stage->body[k];
         ritz_inertia_loss loss = {0};
 
+        if (turns && !turns[k])
+            continue;
         RITZ_CHECK(
             ritz_inertia_loss_of(&body->invariants, &body->K, &body->M, &loss));
         if (loss.value > RITZ_ENERGY_LOST)
             cli_warn(run,
-                     "component '%s': spin terms are approximate: mode %ld "
+                     "component '%s': %s terms are approximate: mode %ld "
                      "loses %.1g of its kinetic energy",
-                     stage->scene->component[k].name, loss.mode + 1,
+                     stage->scene->component[k].name, terms, loss.mode + 1,
                      loss.value);
     }
     return RITZ_OK;
@@ -158,6 +160,6 @@ ritz_status spin_say(cli_run *run, const ritz_stage *stage,
                 ritz_spin_model_name(spin->model));
     warn_of_model(run, spin->model);
     RITZ_CHECK(warn_of_lacks(run, stage, at, &lacks));
-    RITZ_CHECK(warn_of_loss(run, stage));
+    RITZ_CHECK(spin_warn_of_loss(run, stage, NULL, "spin"));
     return say_limits(run, stage, at, lacks);
 }
