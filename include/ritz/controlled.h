@@ -39,26 +39,27 @@ typedef struct ritz_controlled {
     bool force;    /* accept a loop that is itself unstable */
 } ritz_controlled;
 
-/* Stability of a loop, and of the way in which it is propagated. */
-typedef struct ritz_outlook {
-    bool known; /* whether the loop itself, continuous, is stable */
+/* Stability of a loop, and of the method that propagates it. */
+typedef struct ritz_loop_stability {
+    bool known; /* whether the continuous loop is stable: `loop` says so */
     ritz_probe loop;
-    double
-        radius;   /* spectral, of the map from a step, or a sample, to the next;
-                      of `exact` NaN */
-    bool grows;   /* whether it is above 1 by more than its error */
-    bool neutral; /* it is 1 within its error: the loop neither grows nor
-                       decays */
-    bool estimated; /* by the growth of a vector, the map being too large */
-    double limit; /* s: the least step found at which the split is unstable, of
-                     those tried from `from` on upwards. HUGE_VAL: none up to
-                     a whole run; 0: the first is; NaN: not looked for, as of
-                     `exact`, sampled, late and unstable loops */
-    double from;  /* s */
-    bool late;    /* grows at finer steps too, and has a delay */
-    bool hides;   /* the loop is unstable, and the way it is propagated is
-                       not: the run would decay */
-} ritz_outlook;
+    double radius;  /* spectral radius of the map from one step, or sample, to
+                       the next; NaN of `exact` */
+    bool grows;     /* radius exceeds 1 by more than its error */
+    bool neutral;   /* radius is 1 within its error: the motion neither grows
+                       nor decays */
+    bool estimated; /* radius is estimated from the growth of a vector, as the
+                       map is too large */
+    double limit;   /* s: shortest step, of those tried from `from` upwards, at
+                       which the split is unstable. HUGE_VAL: none up to the
+                       length of the run; 0: the first one; NaN: not computed,
+                       if the loop is exact, sampled, unstable by its delay or
+                       unstable itself */
+    double from;    /* s */
+    bool unstable_by_delay; /* grows at finer steps too, and has a delay */
+    bool hides_instability; /* the loop is unstable but its propagation is
+                               stable: the computed motion would decay */
+} ritz_loop_stability;
 
 /**
  * The longest step, of at most @p step, of which the sample and the delay are
@@ -85,7 +86,7 @@ ritz_status ritz_controlled_step(const ritz_controlled *controlled, double step,
 ritz_status ritz_controlled_examine(ritz_model subject,
                                     const ritz_simulation_request *request,
                                     const ritz_controlled *controlled,
-                                    ritz_outlook *out);
+                                    ritz_loop_stability *out);
 
 /**
  * Processor time of a step of a closed loop, measured at rest, in s: the least
@@ -107,7 +108,7 @@ ritz_status ritz_controlled_step_cost(ritz_model subject,
  */
 ritz_status ritz_controlled_refuse(const ritz_simulation_request *request,
                                    const ritz_controlled *controlled,
-                                   const ritz_outlook *outlook);
+                                   const ritz_loop_stability *stability);
 
 /**
  * Simulate a closed loop. The controller starts at rest, and its outputs are 0
@@ -117,7 +118,7 @@ ritz_status ritz_controlled_refuse(const ritz_simulation_request *request,
  * controller (at the time at which they act, without the sign of the feedback),
  * the norm of its states, and its part of the work.
  *
- * @param[in] seen  of ritz_controlled_examine; NULL: the loop is examined here,
+ * @param[in] stability  of ritz_controlled_examine; NULL: the loop is examined,
  *                  and refused as by ritz_controlled_refuse
  * @return RITZ_ERR_ARGUMENT as ritz_simulate and ritz_controlled_refuse, if an
  *         impulse reaches a measured output by feedthrough, if the step does
@@ -131,7 +132,7 @@ ritz_status ritz_controlled_refuse(const ritz_simulation_request *request,
 ritz_status ritz_simulate_controlled(ritz_model subject,
                                      const ritz_simulation_request *request,
                                      const ritz_controlled *controlled,
-                                     const ritz_outlook *seen,
+                                     const ritz_loop_stability *stability,
                                      ritz_simulation *out);
 
 #pragma GCC visibility pop

@@ -104,12 +104,12 @@ ritz_status ritz_controlled_step_cost(ritz_model subject,
 ritz_status ritz_simulate_controlled(ritz_model subject,
                                      const ritz_simulation_request *request,
                                      const ritz_controlled *controlled,
-                                     const ritz_outlook *seen,
+                                     const ritz_loop_stability *stability,
                                      ritz_simulation *out)
 {
-    ritz_outlook own = {0};
+    ritz_loop_stability own = {0};
 
-    if (!seen) {
+    if (!stability) {
         RITZ_CHECK(ritz_controlled_examine(subject, request, controlled, &own));
         RITZ_CHECK(ritz_controlled_refuse(request, controlled, &own));
     }

@@ -38,7 +38,7 @@ static ritz_status map_matrix(ritz_march *march, ritz_dense *out)
     return RITZ_OK;
 }
 
-static ritz_status radius_of_matrix(ritz_march *march, ritz_outlook *out)
+static ritz_status radius_of_matrix(ritz_march *march, ritz_loop_stability *out)
 {
     RITZ_OWN(ritz_dense) A = {0};
     RITZ_OWN(ritz_eigenvalues) values = {0};
@@ -74,7 +74,7 @@ static ritz_status grow_vector(ritz_march *march, int64_t n, int count,
     return RITZ_OK;
 }
 
-static ritz_status radius_of_growth(ritz_march *march, ritz_outlook *out)
+static ritz_status radius_of_growth(ritz_march *march, ritz_loop_stability *out)
 {
     const int64_t n = ritz_split_order(march);
     uint64_t seed = 1992;
@@ -98,7 +98,8 @@ static ritz_status radius_of_growth(ritz_march *march, ritz_outlook *out)
     return RITZ_OK;
 }
 
-static ritz_status find_radius(const scheme *by, double step, ritz_outlook *out)
+static ritz_status find_radius(const scheme *by, double step,
+                               ritz_loop_stability *out)
 {
     RITZ_OWN(ritz_march) march = {0};
 
@@ -149,7 +150,7 @@ static ritz_status bracket_limit(const scheme *by, double from, double *low,
     *low = 0.0;
     *high = HUGE_VAL;
     for (;;) {
-        ritz_outlook now = {0};
+        ritz_loop_stability now = {0};
 
         RITZ_CHECK(find_radius(by, step, &now));
         if (now.grows) {
@@ -166,7 +167,7 @@ static ritz_status bracket_limit(const scheme *by, double from, double *low,
 }
 
 static ritz_status find_limit(const scheme *by, double fastest,
-                              ritz_outlook *out)
+                              ritz_loop_stability *out)
 {
     double low = 0.0, high = 0.0;
 
@@ -174,7 +175,7 @@ static ritz_status find_limit(const scheme *by, double fastest,
     RITZ_CHECK(bracket_limit(by, out->from, &low, &high));
     while (low > 0.0 && isfinite(high) && high - low > RITZ_STEP_FOUND * high) {
         const double middle = 0.5 * (low + high);
-        ritz_outlook now = {0};
+        ritz_loop_stability now = {0};
 
         RITZ_CHECK(find_radius(by, middle, &now));
         if (now.grows)
@@ -187,14 +188,14 @@ static ritz_status find_limit(const scheme *by, double fastest,
 }
 
 /* A delay that makes the loop grow does so at a finer step too. */
-static ritz_status blame_delay(const scheme *by, ritz_outlook *out)
+static ritz_status blame_delay(const scheme *by, ritz_loop_stability *out)
 {
-    ritz_outlook finer = {0};
+    ritz_loop_stability finer = {0};
 
     if (!out->grows)
         return RITZ_OK;
     RITZ_CHECK(find_radius(by, by->request->step / RITZ_STEP_FINER, &finer));
-    out->late = finer.grows;
+    out->unstable_by_delay = finer.grows;
     return RITZ_OK;
 }
 
@@ -215,7 +216,7 @@ static ritz_status find_plant(ritz_model subject, const ritz_motion *motion,
 /* Poles of a continuous loop that is not too large. */
 static ritz_status probe_loop(ritz_model subject, const ritz_motion *motion,
                               const ritz_controlled *controlled,
-                              double *fastest, ritz_outlook *out)
+                              double *fastest, ritz_loop_stability *out)
 {
     const int64_t order = 2 * motion->n + controlled->controller->A.nrow;
     const bool few = motion->form == RITZ_FORM_SPARSE
@@ -235,7 +236,7 @@ static ritz_status probe_loop(ritz_model subject, const ritz_motion *motion,
 
 /* How the split does at the step of the run and at others. */
 static ritz_status examine_split(const scheme *by, double fastest,
-                                 ritz_outlook *out)
+                                 ritz_loop_stability *out)
 {
     const ritz_controlled *controlled = by->controlled;
 
@@ -252,9 +253,10 @@ static ritz_status examine_split(const scheme *by, double fastest,
 ritz_status ritz_controlled_examine(ritz_model subject,
                                     const ritz_simulation_request *request,
                                     const ritz_controlled *controlled,
-                                    ritz_outlook *out)
+                                    ritz_loop_stability *out)
 {
-    ritz_outlook found = {.radius = nan(""), .limit = nan(""), .from = nan("")};
+    ritz_loop_stability found = {
+        .radius = nan(""), .limit = nan(""), .from = nan("")};
     double fastest = 0.0;
     RITZ_OWN(ritz_motion) motion = {0};
     scheme by = {.request = request, .controlled = controlled};
@@ -267,45 +269,48 @@ ritz_status ritz_controlled_examine(ritz_model subject,
     by.motion.any_step = true;
     if (!controlled->exact)
         RITZ_CHECK(examine_split(&by, fastest, &found));
-    found.hides = found.known && found.loop.verdict == RITZ_UNSTABLE &&
-                  !controlled->exact && !found.grows;
+    found.hides_instability = found.known &&
+                              found.loop.verdict == RITZ_UNSTABLE &&
+                              !controlled->exact && !found.grows;
     *out = found;
     return RITZ_OK;
 }
 
-static ritz_status refuse_step(double step, const ritz_outlook *seen)
+static ritz_status refuse_step(double step,
+                               const ritz_loop_stability *stability)
 {
     RITZ_REFUSE_IF(
-        seen->limit > 0.0, RITZ_ERR_ARGUMENT,
+        stability->limit > 0.0, RITZ_ERR_ARGUMENT,
         "a step of %g s makes the loop unstable, whose parts hold each other's "
         "outputs: spectral radius %.8g; of steps tried from %.5g s up, %.5g s "
         "is "
         "the least that does; take it all the same with --any-step",
-        step, seen->radius, seen->from, seen->limit);
+        step, stability->radius, stability->from, stability->limit);
     RITZ_REFUSE_IF(
-        seen->limit == 0.0, RITZ_ERR_ARGUMENT,
+        stability->limit == 0.0, RITZ_ERR_ARGUMENT,
         "a step of %g s makes the loop unstable, whose parts hold each other's "
         "outputs: spectral radius %.8g, and so does the least that was tried, "
         "%.5g s; take it all the same with --any-step",
-        step, seen->radius, seen->from);
+        step, stability->radius, stability->from);
     return ritz_fail(
         RITZ_ERR_ARGUMENT,
         "a step of %g s makes the loop unstable, whose parts hold each other's "
         "outputs: spectral radius %.8g; take it all the same with --any-step",
-        step, seen->radius);
+        step, stability->radius);
 }
 
 ritz_status ritz_controlled_refuse(const ritz_simulation_request *request,
                                    const ritz_controlled *controlled,
-                                   const ritz_outlook *outlook)
+                                   const ritz_loop_stability *stability)
 {
     const bool unstable =
-        outlook->known && outlook->loop.verdict == RITZ_UNSTABLE;
+        stability->known && stability->loop.verdict == RITZ_UNSTABLE;
     char text[2 * RITZ_NAME_SIZE];
 
     if (unstable)
-        ritz_probe_print(&outlook->loop, text);
-    RITZ_REFUSE_IF(unstable && !controlled->force && outlook->hides,
+        ritz_probe_print(&stability->loop, text);
+    RITZ_REFUSE_IF(unstable && !controlled->force &&
+                       stability->hides_instability,
                    RITZ_ERR_ARGUMENT,
                    "the loop is unstable, %s, and a step of %g s would hide "
                    "that; simulate it all the same with --force",
@@ -314,19 +319,20 @@ ritz_status ritz_controlled_refuse(const ritz_simulation_request *request,
                    "the loop is unstable, %s: it grows without bound; simulate "
                    "it all the same with --force",
                    text);
-    RITZ_REFUSE_IF(controlled->sample > 0.0 && outlook->grows &&
+    RITZ_REFUSE_IF(controlled->sample > 0.0 && stability->grows &&
                        !controlled->force,
                    RITZ_ERR_ARGUMENT,
                    "the sampled loop is unstable, %.8g times larger after each "
                    "sample; simulate it all the same with --force",
-                   outlook->radius);
-    RITZ_REFUSE_IF(outlook->late && !controlled->force, RITZ_ERR_ARGUMENT,
+                   stability->radius);
+    RITZ_REFUSE_IF(stability->unstable_by_delay && !controlled->force,
+                   RITZ_ERR_ARGUMENT,
                    "the loop is unstable with its delay of %g s, %.8g times "
                    "more from one step to the next, and at finer steps too; "
                    "simulate it all the same with --force",
-                   controlled->delay, outlook->radius);
-    if (controlled->sample > 0.0 || unstable || outlook->late ||
-        !outlook->grows || controlled->any_step)
+                   controlled->delay, stability->radius);
+    if (controlled->sample > 0.0 || unstable || stability->unstable_by_delay ||
+        !stability->grows || controlled->any_step)
         return RITZ_OK;
-    return refuse_step(request->step, outlook);
+    return refuse_step(request->step, stability);
 }

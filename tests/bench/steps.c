@@ -126,7 +126,7 @@ typedef struct kind {
 static ritz_status time_run(const plant *p, const kind *k, int64_t steps,
                             double *out)
 {
-    static const ritz_outlook seen = {0};
+    static const ritz_loop_stability stability = {0};
     static const ritz_signal push = {.kind = RITZ_SIGNAL_STEP,
                                      .amplitude = 1.0};
     const ritz_controlled way = {.controller = &p->controller,
@@ -151,9 +151,9 @@ static ritz_status time_run(const plant *p, const kind *k, int64_t steps,
     request.seconds = request.step * (double)steps;
     request.every = steps;
     request.signal = &push;
-    RITZ_TRY(k->loop
-                 ? ritz_simulate_controlled(model, &request, &way, &seen, &s)
-                 : ritz_simulate(model, &request, &s));
+    RITZ_TRY(k->loop ? ritz_simulate_controlled(model, &request, &way,
+                                                &stability, &s)
+                     : ritz_simulate(model, &request, &s));
     *out = seconds() - began;
 done:
     ritz_simulation_free(&s);

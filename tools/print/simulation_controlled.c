@@ -12,39 +12,40 @@ bool simulation_is_controlled(const simulation_options *given)
 }
 
 /* What is said of this step, and the least unstable one that was found. */
-static void say_split(cli_run *run, bool sampled, const ritz_outlook *seen)
+static void say_split(cli_run *run, bool sampled,
+                      const ritz_loop_stability *stability)
 {
     sink_field(run, sampled ? "one sample" : "one step", "spectral_radius",
-               "spectral radius %.8g%s", seen->radius,
-               seen->estimated ? ", by the growth of a vector" : "");
-    if (isnan(seen->limit))
+               "spectral radius %.8g%s", stability->radius,
+               stability->estimated ? ", by the growth of a vector" : "");
+    if (isnan(stability->limit))
         return;
-    if (isinf(seen->limit))
+    if (isinf(stability->limit))
         cli_say(run,
                 "stable as it is split: at all steps that were tried, from "
                 "%.5g s up to the whole run",
-                seen->from);
-    else if (seen->limit > 0.0)
+                stability->from);
+    else if (stability->limit > 0.0)
         sink_field(run, "unstable from", "step_limit",
                    "a step of %.5g s, the least found of those tried from "
                    "%.5g s up",
-                   seen->limit, seen->from);
+                   stability->limit, stability->from);
     else
         cli_say(run,
                 "unstable as it is split: at the least step that was tried, "
                 "%.5g s",
-                seen->from);
+                stability->from);
 }
 
 /* The verdict where there are no poles of a continuous loop. A sampled loop is
    stable if its map is; a delayed one is known to be unstable only. */
 static void say_map(cli_run *run, const ritz_controlled *controlled,
-                    const ritz_outlook *seen)
+                    const ritz_loop_stability *stability)
 {
     const bool sampled = controlled->sample > 0.0;
-    const ritz_stability verdict = seen->grows     ? RITZ_UNSTABLE
-                                   : seen->neutral ? RITZ_MARGINAL
-                                                   : RITZ_STABLE;
+    const ritz_stability verdict = stability->grows     ? RITZ_UNSTABLE
+                                   : stability->neutral ? RITZ_MARGINAL
+                                                        : RITZ_STABLE;
 
     if (sampled) {
         sink_say(run, "stability", "the sampled loop is %s",
@@ -54,33 +55,36 @@ static void say_map(cli_run *run, const ritz_controlled *controlled,
     cli_say(run, "the poles of the loop are not known, because the plant is "
                  "too large or the controller has a delay");
     sink_set(run, "stability", "%s",
-             seen->late ? ritz_stability_name(RITZ_UNSTABLE) : "unknown");
+             stability->unstable_by_delay ? ritz_stability_name(RITZ_UNSTABLE)
+                                          : "unknown");
 }
 
-static void warn_of_growth(cli_run *run, double step, const ritz_outlook *seen)
+static void warn_of_growth(cli_run *run, double step,
+                           const ritz_loop_stability *stability)
 {
     char text[2 * RITZ_NAME_SIZE];
-    const bool unstable = seen->known && seen->loop.verdict == RITZ_UNSTABLE;
+    const bool unstable =
+        stability->known && stability->loop.verdict == RITZ_UNSTABLE;
 
     if (unstable)
-        ritz_probe_print(&seen->loop, text);
-    if (seen->hides)
+        ritz_probe_print(&stability->loop, text);
+    if (stability->hides_instability)
         cli_warn(
             run,
             "the loop is unstable, %s, but not as it is propagated: a step "
             "of %g s hides it (spectral radius %.8g), and what is written "
             "is not the loop's motion",
-            text, step, seen->radius);
+            text, step, stability->radius);
     else if (unstable)
         cli_warn(run, "the loop is unstable, %s: it grows without bound", text);
-    else if (seen->late)
+    else if (stability->unstable_by_delay)
         cli_warn(run,
                  "the loop is unstable with its delay, at finer steps too: it "
                  "grows by %.8g from one step to the next",
-                 seen->radius);
-    else if (seen->grows)
+                 stability->radius);
+    else if (stability->grows)
         cli_warn(run, "it grows by %.8g from one step or sample to the next",
-                 seen->radius);
+                 stability->radius);
 }
 
 /* Print the stability of the loop once for each run, and refuse an unstable
@@ -90,17 +94,18 @@ static ritz_status examine(simulation_task *d,
                            const ritz_controlled *controlled)
 {
     cli_run *run = d->run;
-    ritz_outlook seen = {0};
+    ritz_loop_stability stability = {0};
 
-    RITZ_CHECK(ritz_controlled_examine(d->subject, request, controlled, &seen));
-    if (seen.known)
-        loop_say_stability(run, &seen.loop);
+    RITZ_CHECK(
+        ritz_controlled_examine(d->subject, request, controlled, &stability));
+    if (stability.known)
+        loop_say_stability(run, &stability.loop);
     else
-        say_map(run, controlled, &seen);
+        say_map(run, controlled, &stability);
     if (!controlled->exact)
-        say_split(run, controlled->sample > 0.0, &seen);
-    RITZ_CHECK(ritz_controlled_refuse(request, controlled, &seen));
-    warn_of_growth(run, request->step, &seen);
+        say_split(run, controlled->sample > 0.0, &stability);
+    RITZ_CHECK(ritz_controlled_refuse(request, controlled, &stability));
+    warn_of_growth(run, request->step, &stability);
     return RITZ_OK;
 }
 
@@ -203,7 +208,7 @@ ritz_status simulation_controlled(simulation_task *d,
                                   const ritz_simulation_request *request,
                                   ritz_simulation *out)
 {
-    static const ritz_outlook examined = {0};
+    static const ritz_loop_stability examined = {0};
     ritz_simulation_request asked = *request;
     const ritz_controlled controlled = take_controlled(d);
 

@@ -337,7 +337,7 @@ static void the_limit_of_an_integrator_is_two_over_its_gain(void **state)
     static const spaces_rows gains = {0, 1, 1, NULL, NULL, NULL, &gain, NULL};
     RITZ_OWN(rig) r = {0};
     RITZ_OWN(ritz_simulation) s = {0};
-    ritz_outlook seen = {0};
+    ritz_loop_stability stability = {0};
 
     (void)state;
     assert_ok(spaces_make(&integrator, &r.plant));
@@ -345,10 +345,11 @@ static void the_limit_of_an_integrator_is_two_over_its_gain(void **state)
     r.subject = ritz_model_of_states(&r.plant);
     join(false, &r);
     ask(10.0, 0.1, &r);
-    assert_ok(ritz_controlled_examine(r.subject, &r.request, &r.way, &seen));
-    assert_near(seen.radius, 0.7, 4.0 * DBL_EPSILON);
-    assert_near(seen.limit, 2.0 / 3.0, 1e-4 * 2.0 / 3.0);
-    assert_int_equal(seen.loop.verdict, RITZ_STABLE);
+    assert_ok(
+        ritz_controlled_examine(r.subject, &r.request, &r.way, &stability));
+    assert_near(stability.radius, 0.7, 4.0 * DBL_EPSILON);
+    assert_near(stability.limit, 2.0 / 3.0, 1e-4 * 2.0 / 3.0);
+    assert_int_equal(stability.loop.verdict, RITZ_STABLE);
     r.request.step = 0.7;
     assert_fails(
         ritz_simulate_controlled(r.subject, &r.request, &r.way, NULL, &s),
@@ -368,7 +369,7 @@ static void a_delay_that_makes_a_loop_unstable_is_named(void **state)
     static const spaces_rows gains = {0, 1, 1, NULL, NULL, NULL, &gain, NULL};
     RITZ_OWN(rig) r = {0};
     RITZ_OWN(ritz_simulation) s = {0};
-    ritz_outlook seen = {0};
+    ritz_loop_stability stability = {0};
 
     (void)state;
     assert_ok(spaces_make(&integrator, &r.plant));
@@ -378,37 +379,41 @@ static void a_delay_that_makes_a_loop_unstable_is_named(void **state)
     ask(10.0, 0.1, &r);
     r.way.delay = 1.0;
     r.way.any_step = true;
-    assert_ok(ritz_controlled_examine(r.subject, &r.request, &r.way, &seen));
-    assert_true(seen.late && isnan(seen.limit));
+    assert_ok(
+        ritz_controlled_examine(r.subject, &r.request, &r.way, &stability));
+    assert_true(stability.unstable_by_delay && isnan(stability.limit));
     assert_fails(
         ritz_simulate_controlled(r.subject, &r.request, &r.way, NULL, &s),
         RITZ_ERR_ARGUMENT, "unstable with its delay of 1 s");
     r.way.delay = 0.4; /* 1.2 < pi / 2 */
-    assert_ok(ritz_controlled_examine(r.subject, &r.request, &r.way, &seen));
-    assert_false(seen.late || seen.grows);
+    assert_ok(
+        ritz_controlled_examine(r.subject, &r.request, &r.way, &stability));
+    assert_false(stability.unstable_by_delay || stability.grows);
     r.way.delay = r.request.step = 0.4; /* held for half a step besides */
-    assert_ok(ritz_controlled_examine(r.subject, &r.request, &r.way, &seen));
-    assert_true(seen.grows && !seen.late);
+    assert_ok(
+        ritz_controlled_examine(r.subject, &r.request, &r.way, &stability));
+    assert_true(stability.grows && !stability.unstable_by_delay);
 }
 
 /* The three masses: found by bisection in NumPy on the same map. */
 static void the_limit_of_three_masses_is_that_of_their_map(void **state)
 {
     RITZ_OWN(rig) r = {0};
-    ritz_outlook seen = {0};
+    ritz_loop_stability stability = {0};
 
     (void)state;
     derivative(1.0, false, &r);
-    assert_ok(ritz_controlled_examine(r.subject, &r.request, &r.way, &seen));
-    assert_near(seen.radius, 0.999315815268471, 1e-13);
-    assert_near(seen.limit, 0.5193733195648383, 1e-4 * 0.52);
+    assert_ok(
+        ritz_controlled_examine(r.subject, &r.request, &r.way, &stability));
+    assert_near(stability.radius, 0.999315815268471, 1e-13);
+    assert_near(stability.limit, 0.5193733195648383, 1e-4 * 0.52);
     for (int k = 1; k <= 2; k++) { /* 2 s is stable again */
         r.request.step = k;
         assert_ok(
-            ritz_controlled_examine(r.subject, &r.request, &r.way, &seen));
-        assert_true(seen.grows == (k == 1));
-        assert_near(seen.limit, 0.5193733195648383, 1e-4 * 0.52);
-        assert_true(seen.from > 0.0 && seen.from < 0.05);
+            ritz_controlled_examine(r.subject, &r.request, &r.way, &stability));
+        assert_true(stability.grows == (k == 1));
+        assert_near(stability.limit, 0.5193733195648383, 1e-4 * 0.52);
+        assert_true(stability.from > 0.0 && stability.from < 0.05);
     }
 }
 
@@ -420,7 +425,7 @@ static void a_split_that_hides_an_unstable_loop_is_named(void **state)
     static const spaces_rows gains = {0, 1, 1, NULL, NULL, NULL, &gain, NULL};
     RITZ_OWN(rig) r = {0};
     RITZ_OWN(ritz_simulation) s = {0};
-    ritz_outlook seen = {0};
+    ritz_loop_stability stability = {0};
 
     (void)state;
     assert_ok(motions_row(1, &m, &k, &c, &r.row));
@@ -428,10 +433,12 @@ static void a_split_that_hides_an_unstable_loop_is_named(void **state)
     assert_ok(spaces_make(&gains, &r.controller));
     join(true, &r);
     ask(10.0, 0.1, &r);
-    assert_ok(ritz_controlled_examine(r.subject, &r.request, &r.way, &seen));
-    assert_true(seen.known && seen.hides && isnan(seen.limit));
-    assert_near(seen.loop.pole[0], 0.01, 1e-14);
-    assert_near(seen.radius, 1.0 - 0.00024913469006393463, 1e-13);
+    assert_ok(
+        ritz_controlled_examine(r.subject, &r.request, &r.way, &stability));
+    assert_true(stability.known && stability.hides_instability &&
+                isnan(stability.limit));
+    assert_near(stability.loop.pole[0], 0.01, 1e-14);
+    assert_near(stability.radius, 1.0 - 0.00024913469006393463, 1e-13);
     assert_fails(
         ritz_simulate_controlled(r.subject, &r.request, &r.way, NULL, &s),
         RITZ_ERR_ARGUMENT, "a step of 0.1 s would hide that");
@@ -451,7 +458,7 @@ static void a_dissipative_integrator_that_hides_it_is_named(void **state)
     static const double m = 1.0, k = 2500.0, c = -1.0, gain = 1.0;
     static const spaces_rows gains = {0, 1, 1, NULL, NULL, NULL, &gain, NULL};
     RITZ_OWN(rig) r = {0};
-    ritz_outlook seen = {0};
+    ritz_loop_stability stability = {0};
 
     (void)state;
     assert_ok(motions_row(1, &m, &k, &c, &r.row));
@@ -461,12 +468,14 @@ static void a_dissipative_integrator_that_hides_it_is_named(void **state)
     ask(10.0, 0.05, &r);
     r.request.integrator = &ritz_integrator_generalised_alpha;
     r.request.rho = 0.5;
-    assert_ok(ritz_controlled_examine(r.subject, &r.request, &r.way, &seen));
-    assert_true(seen.hides);
+    assert_ok(
+        ritz_controlled_examine(r.subject, &r.request, &r.way, &stability));
+    assert_true(stability.hides_instability);
     refuse(&r, "a step of 0.05 s would hide that");
     r.request.integrator = &ritz_integrator_trapezoidal;
-    assert_ok(ritz_controlled_examine(r.subject, &r.request, &r.way, &seen));
-    assert_false(seen.hides);
+    assert_ok(
+        ritz_controlled_examine(r.subject, &r.request, &r.way, &stability));
+    assert_false(stability.hides_instability);
 }
 
 /* 90 masses have more than 180 states, so that the radius is estimated from the
@@ -477,7 +486,7 @@ static void a_large_map_is_judged_by_the_growth_of_a_vector(void **state)
     double m[N], k[N], c[N], gain = 100.0;
     const spaces_rows gains = {0, 1, 1, NULL, NULL, NULL, &gain, NULL};
     RITZ_OWN(rig) r = {0};
-    ritz_outlook seen = {0};
+    ritz_loop_stability stability = {0};
 
     (void)state;
     for (int j = 0; j < N; j++) {
@@ -490,13 +499,16 @@ static void a_large_map_is_judged_by_the_growth_of_a_vector(void **state)
     assert_ok(spaces_make(&gains, &r.controller));
     join(false, &r);
     ask(0.5, 0.5, &r);
-    assert_ok(ritz_controlled_examine(r.subject, &r.request, &r.way, &seen));
-    assert_true(seen.estimated && seen.grows);
-    assert_near(seen.radius, 1.04287742715657483, 2e-3); /* measured: 1e-3 */
+    assert_ok(
+        ritz_controlled_examine(r.subject, &r.request, &r.way, &stability));
+    assert_true(stability.estimated && stability.grows);
+    assert_near(stability.radius, 1.04287742715657483,
+                2e-3); /* measured: 1e-3 */
     r.request.seconds = r.request.step = 0.01;
     *ritz_dense_col(&r.controller.D, 0) = 0.05;
-    assert_ok(ritz_controlled_examine(r.subject, &r.request, &r.way, &seen));
-    assert_false(seen.grows);
+    assert_ok(
+        ritz_controlled_examine(r.subject, &r.request, &r.way, &stability));
+    assert_false(stability.grows);
 }
 
 static bool stop_once(void *context)
@@ -605,7 +617,7 @@ static void a_singular_loop_of_feedthroughs_is_refused(void **state)
 
     (void)state;
     for (int k = 0; k < 2; k++) {
-        const ritz_outlook seen = {0};
+        const ritz_loop_stability stability = {0};
         RITZ_OWN(rig) r = {0};
         RITZ_OWN(ritz_simulation) s = {0};
 
@@ -615,9 +627,9 @@ static void a_singular_loop_of_feedthroughs_is_refused(void **state)
         join(false, &r);
         ask(1.0, 0.1, &r);
         r.way.exact = exact[k];
-        assert_fails(
-            ritz_simulate_controlled(r.subject, &r.request, &r.way, &seen, &s),
-            RITZ_ERR_SINGULAR, "form a loop that has no solution");
+        assert_fails(ritz_simulate_controlled(r.subject, &r.request, &r.way,
+                                              &stability, &s),
+                     RITZ_ERR_SINGULAR, "form a loop that has no solution");
     }
 }
 
@@ -626,7 +638,7 @@ static void a_loop_too_large_for_one_exponential_is_refused(void **state)
     enum { N = RITZ_LOOP_EXACT };
     static const double A[N * N] = {-1.0}, B[N] = {1.0};
     static const spaces_rows plant = {N, 1, 1, A, B, B, NULL, NULL};
-    const ritz_outlook seen = {0};
+    const ritz_loop_stability stability = {0};
     RITZ_OWN(rig) r = {0};
     RITZ_OWN(ritz_simulation) s = {0};
 
@@ -638,7 +650,7 @@ static void a_loop_too_large_for_one_exponential_is_refused(void **state)
     ask(1.0, 0.1, &r);
     r.way.exact = true;
     assert_fails(
-        ritz_simulate_controlled(r.subject, &r.request, &r.way, &seen, &s),
+        ritz_simulate_controlled(r.subject, &r.request, &r.way, &stability, &s),
         RITZ_ERR_ARGUMENT,
         "a closed loop of 401 states is too large for one "
         "exponential, which takes 400: use split");
