@@ -43,20 +43,20 @@ typedef struct ritz_switched {
                            and columns that depend on earlier ones are left
                            out */
     double interval; /* s from one switch to the next, a multiple of the step */
-    double least;    /* Emin, above 0 and below 1: vectors are added to a set
-                           until E exceeds it */
-    bool within;     /* E is relative to the part of R that the whole library
-                        captures, not to R. It is meant for libraries that span
-                        less than the model, whose E would otherwise not reach
-                        Emin */
+    double indicator; /* Emin, above 0 and below 1: vectors are added to a set
+                         until E exceeds it */
+    bool share_of_library; /* E is relative to the part of R that the whole
+                              library captures, not to R. It is meant for
+                              libraries that span less than the model, whose E
+                              would otherwise not reach Emin */
     double hysteresis; /* the share of a vector of the present set is multiplied
                            by 1 + hysteresis, and the vector is dropped only
                            where E without it exceeds Emin by hysteresis (1 -
                            Emin); 0: only ties go to the present set */
-    bool ahead; /* R is computed with the inputs at the start and at the end of
-                   the interval, and |psi'W R|^2 and R'W R are sums over both.
-                   false: a force that begins within an interval acts on a set
-                   that was chosen without it */
+    bool look_ahead;   /* R is computed with the inputs at the start and at the
+                        end of the interval, and |psi'W R|^2 and R'W R are sums
+                        over both. false: a force that begins during an interval
+                        acts on a set that was chosen without it */
     ritz_switch_inner inner;
     ritz_switch_jump jump;
     double dwell; /* s for which a set is kept at least; 0: one interval */
@@ -74,9 +74,9 @@ typedef struct ritz_switched_report {
     double dwell;   /* shortest with which the library is stable, s; 0: any */
     double outside; /* with RITZ_SWITCH_PROJECT: share of the initial state that
                        is M-orthogonal to the library and lost */
-    double still;   /* largest share of the kinetic energy at a switch that the
-                        new set does not move: held, or lost by projection */
-    double still_at; /* s, when that was */
+    double left_out; /* largest share of the kinetic energy at a switch that the
+                        new set leaves out: it is held, or lost by projection */
+    double left_out_at; /* s, time of that switch */
 } ritz_switched_report;
 
 /**

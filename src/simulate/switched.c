@@ -40,10 +40,10 @@ enum {
     NUM_DIAGNOSTICS,
     LARGEST = NUM_DIAGNOSTICS,
     LAST_SWITCH, /* step at which the set changed last */
-    STILL,       /* largest share of the kinetic energy that a set left out */
-    STILL_AT,    /* step at which that set began */
+    LEFT_OUT,    /* largest share of the kinetic energy that a set left out */
+    LEFT_OUT_AT, /* step at which that set began */
     MOVING,      /* largest kinetic energy at a switch, doubled */
-    NUM_TOLD,
+    NUM_NOTED,
 };
 
 static const char *const diagnostics[] = {
@@ -126,17 +126,18 @@ static void project_state(ritz_march *march, switching *s)
 }
 
 /* What of the kinetic energy a new set does not move. */
-static void note_still(const ritz_march *march, switching *s)
+static void note_left_out(const ritz_march *march, switching *s)
 {
     const int64_t n = s->library->n;
     const double all = ritz_motion_dot(n, march->v, march->v);
     const double share = ritz_motion_dot(n, s->w_0, s->w_0) / all; /* or nan */
 
     s->told[MOVING] = fmax(s->told[MOVING], all);
-    if (all <= RITZ_SWITCH_MOVES * s->told[MOVING] || share <= s->told[STILL])
+    if (all <= RITZ_SWITCH_MOVES * s->told[MOVING] ||
+        share <= s->told[LEFT_OUT])
         return;
-    s->told[STILL] = share;
-    s->told[STILL_AT] = (double)march->steps;
+    s->told[LEFT_OUT] = share;
+    s->told[LEFT_OUT_AT] = (double)march->steps;
 }
 
 static int64_t count_present(const switching *s)
@@ -159,7 +160,7 @@ static ritz_status change_set(ritz_march *march, switching *s)
     RITZ_CHECK(ritz_set_model_new(s->library, s->choosing.present, &s->set));
     ritz_set_model_hold(&s->set, library->n, march->x, s->q_0, s->p);
     ritz_set_model_hold(&s->set, library->n, march->v, s->w_0, s->v);
-    note_still(march, s);
+    note_left_out(march, s);
     if (s->switched->jump == RITZ_SWITCH_PROJECT)
         project_state(march, s);
     s->told[SWITCHES] += 1.0;
@@ -186,7 +187,7 @@ static bool find_residue(const ritz_march *march, switching *s,
                          const double *u0)
 {
     const double *const u[] = {u0, s->u1};
-    const double *ahead = s->switched->ahead ? s->ahead : NULL;
+    const double *ahead = s->switched->look_ahead ? s->ahead : NULL;
 
     find_inputs(march, s, 1, s->u1);
     find_inputs(march, s, s->steps_between, s->ahead);
@@ -345,7 +346,7 @@ static ritz_status fill_motion(const ritz_library *library, const ritz_io *io,
 static ritz_status make_memory(const ritz_library *library, switching *s,
                                ritz_march *march)
 {
-    const int64_t parts[] = {NUM_TOLD,   library->num_vectors, library->n,
+    const int64_t parts[] = {NUM_NOTED,  library->num_vectors, library->n,
                              library->n, library->span,        library->span};
     double **const places[] = {
         &s->told, &s->choosing.present, &s->q_0, &s->w_0, &s->p, &s->v};
@@ -479,9 +480,10 @@ static ritz_status check_request(ritz_model subject,
                    "damping ratios of a component need its modes, which are "
                    "not known: give rayleigh damping, or reduce it by 'full' "
                    "first");
-    RITZ_REFUSE_IF(
-        !(switched->least > 0.0) || !(switched->least < 1.0), RITZ_ERR_ARGUMENT,
-        "an indicator is above 0 and below 1, not %g", switched->least);
+    RITZ_REFUSE_IF(!(switched->indicator > 0.0) || !(switched->indicator < 1.0),
+                   RITZ_ERR_ARGUMENT,
+                   "an indicator is above 0 and below 1, not %g",
+                   switched->indicator);
     RITZ_REFUSE_IF(
         !(switched->hysteresis >= 0.0) || !(switched->hysteresis < 1.0),
         RITZ_ERR_ARGUMENT, "a hysteresis is 0 or above, and below 1, not %g",
@@ -503,8 +505,8 @@ static void fill_report(const ritz_march *march, const ritz_library *library,
     report->num_fallbacks = (int64_t)s->told[FALLBACKS];
     report->vector_steps = s->told[VECTOR_STEPS];
     report->outside = library->outside;
-    report->still = s->told[STILL];
-    report->still_at = s->told[STILL_AT] * march->step;
+    report->left_out = s->told[LEFT_OUT];
+    report->left_out_at = s->told[LEFT_OUT_AT] * march->step;
 }
 
 /* It has the name of the run only: `modal` propagates the sets. */

@@ -19,15 +19,15 @@
  * computed without loss of digits.
  */
 typedef struct ritz_library {
-    int64_t num_vectors;  /* L, candidates */
-    int64_t n, span;      /* columns of Phi */
-    ritz_dense Phi, MPhi; /* full rows x n */
-    ritz_dense vector;    /* span x L: directions of candidates in V = Phi
+    int64_t num_vectors;   /* L, candidates */
+    int64_t n, span;       /* columns of Phi */
+    ritz_dense Phi, MPhi;  /* full rows x n */
+    ritz_dense vector;     /* span x L: directions of candidates in V = Phi
                               diag(1 / scale), orthonormal in W */
-    double *scale;        /* n: 1, or 1/sqrt(mu) where W = I */
-    bool redundant;       /* else `vector` is the identity */
-    bool within;          /* |R|^2 is that of its part in the library */
-    ritz_dense K, D, B;   /* Phi'K Phi, Phi'D Phi, Phi'B */
+    double *scale;         /* n: 1, or 1/sqrt(mu) where W = I */
+    bool redundant;        /* else `vector` is the identity */
+    bool share_of_library; /* |R|^2 is that of its part in the library */
+    ritz_dense K, D, B;    /* Phi'K Phi, Phi'D Phi, Phi'B */
     ritz_dense S_x, S_k, S_d, S_b;
     double outside; /* share of the initial state outside the library */
 } ritz_library;

@@ -72,7 +72,7 @@ void ritz_residue_find(const ritz_library *library, const double *q,
         r->square += square_of_force(library, q, w, ahead, r);
         find_force(library, q, w, ahead, r->ahead);
     }
-    if (library->within)
+    if (library->share_of_library)
         r->square = r->twice * ritz_motion_dot(n, r->x, r->x) +
                     ritz_motion_dot(n, r->v, r->v) +
                     ritz_motion_dot(n, r->ahead, r->ahead);
@@ -158,12 +158,12 @@ static int64_t find_best(const ritz_library *library,
 /* Whether E is large enough that the next vector is not needed. */
 static bool is_enough(const ritz_switched *switched, double E, bool present)
 {
-    const double room = 1.0 - switched->least;
+    const double room = 1.0 - switched->indicator;
 
     if (!present)
-        return E > switched->least - RITZ_SWITCH_TIE;
-    return E >
-           switched->least + fmax(RITZ_SWITCH_TIE, switched->hysteresis * room);
+        return E > switched->indicator - RITZ_SWITCH_TIE;
+    return E > switched->indicator +
+                   fmax(RITZ_SWITCH_TIE, switched->hysteresis * room);
 }
 
 void ritz_choose_vectors(const ritz_library *library,

@@ -146,7 +146,7 @@ static ritz_status take_candidates(const ritz_switched *switched,
                    "the library has no vector that is not zero");
     out->span = b->count;
     out->redundant = switched->redundant;
-    out->within = switched->within;
+    out->share_of_library = switched->share_of_library;
     if (!switched->redundant) {
         out->num_vectors = out->span;
         return ritz_dense_identity(out->span, &out->vector);

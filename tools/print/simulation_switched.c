@@ -175,8 +175,8 @@ ritz_status simulation_switched_prepare(simulation_task *task)
 }
 
 /* What sets left out although it moved. */
-static void say_still(cli_run *run, const ritz_switched *asked,
-                      const ritz_switched_report *r)
+static void say_left_out(cli_run *run, const ritz_switched *asked,
+                         const ritz_switched_report *r)
 {
     const bool offset = asked->jump == RITZ_SWITCH_OFFSET;
 
@@ -184,13 +184,13 @@ static void say_still(cli_run *run, const ritz_switched *asked,
         run, "left out", "left_out,left_out_at",
         "a share of %.2g of the kinetic energy, by the set that begins at "
         "%.6g s",
-        r->still, r->still_at);
-    if (r->still > RITZ_SWITCH_STILL)
+        r->left_out, r->left_out_at);
+    if (r->left_out > RITZ_SWITCH_STILL)
         cli_warn(
             run,
             "the set that begins at %.6g s leaves out %.3g %% of the kinetic "
             "energy, which %s: an --indicator nearer to 1 leaves out less",
-            r->still_at, 100.0 * r->still,
+            r->left_out_at, 100.0 * r->left_out,
             offset ? "stands still from then on" : "is lost");
 }
 
@@ -218,7 +218,7 @@ static void say_report(cli_run *run, const ritz_switched *asked,
                    "the energy is a common Lyapunov function of all sets, "
                    "which the library meets to %.1e",
                    r->defect);
-    say_still(run, asked, r);
+    say_left_out(run, asked, r);
     if (r->outside > 0.0)
         cli_warn(run,
                  "%.2g of the initial state is outside the library, and is "
@@ -238,10 +238,10 @@ ritz_status simulation_switched(simulation_task *task,
         .library = task->library,
         .redundant = given->redundant,
         .interval = given->switch_interval,
-        .least = given->indicator,
-        .within = strcmp(given->share_of, "library") == 0,
+        .indicator = given->indicator,
+        .share_of_library = strcmp(given->share_of, "library") == 0,
         .hysteresis = given->hysteresis,
-        .ahead = given->look_ahead,
+        .look_ahead = given->look_ahead,
         .inner = euclidean ? RITZ_SWITCH_EUCLIDEAN : RITZ_SWITCH_MASS,
         .jump = project ? RITZ_SWITCH_PROJECT : RITZ_SWITCH_OFFSET,
         .dwell = given->dwell,

@@ -273,7 +273,7 @@ static ritz_status choice_new(choice *c)
     c->switched = (ritz_switched){.num_libraries = 1,
                                   .library = &c->library,
                                   .interval = 0.05,
-                                  .least = 0.9};
+                                  .indicator = 0.9};
     return RITZ_OK;
 }
 

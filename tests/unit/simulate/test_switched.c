@@ -153,7 +153,7 @@ static double run_density(int n, int64_t *first)
                               .library = &library,
                               .redundant = true,
                               .interval = 0.01,
-                              .least = 0.9};
+                              .indicator = 0.9};
 
     assert_ok(plane_new(&p));
     pushes_new(0.9397, 0.3420, 0.0, 0.2, step, 6000, &f);
@@ -199,7 +199,7 @@ static void simulation_a_keeps_its_second_basis_until_6_05_s(void **state)
                                     .library = &library,
                                     .redundant = true,
                                     .interval = 0.05,
-                                    .least = 0.9};
+                                    .indicator = 0.9};
 
     (void)state;
     assert_ok(plane_new(&p));
@@ -256,7 +256,7 @@ static void all_modes_are_the_full_model(void **state)
     const ritz_switched switched = {.num_libraries = 1,
                                     .library = &library,
                                     .interval = 0.05,
-                                    .least = 1.0 - 1e-9};
+                                    .indicator = 1.0 - 1e-9};
 
     (void)state;
     assert_ok(new_row(true, &m));
@@ -280,8 +280,10 @@ static void a_set_is_propagated_as_its_reduced_model(void **state)
     RITZ_OWN(ritz_simulation) reduced = {0}, s = {0};
     ritz_second_order small = {.K = &K, .M = &M, .D = &D, .io = &io};
     const ritz_simulation_request request = asking(4.0, 0.01, &motions_step);
-    const ritz_switched switched = {
-        .num_libraries = 1, .library = &T, .interval = 0.1, .least = 0.999999};
+    const ritz_switched switched = {.num_libraries = 1,
+                                    .library = &T,
+                                    .interval = 0.1,
+                                    .indicator = 0.999999};
     ritz_switched_report report = {0};
 
     (void)state;
@@ -319,7 +321,7 @@ static void a_component_is_switched_as_its_matrices(void **state)
     const ritz_switched switched = {.num_libraries = 1,
                                     .library = &library,
                                     .interval = 0.03,
-                                    .least = 0.7,
+                                    .indicator = 0.7,
                                     .jump = RITZ_SWITCH_PROJECT};
 
     (void)state;
@@ -344,7 +346,7 @@ static void projection_loses_the_energy_that_it_reports(void **state)
     const ritz_switched switched = {.num_libraries = 1,
                                     .library = &library,
                                     .interval = 0.1,
-                                    .least = 0.6,
+                                    .indicator = 0.6,
                                     .jump = RITZ_SWITCH_PROJECT};
     double lost = 0.0;
     int64_t jumps = 0, kept = 0;
@@ -419,7 +421,7 @@ static void draw_case(uint64_t *seed, random_case *c)
         .num_libraries = 1,
         .library = &c->library,
         .interval = 0.01 * floor(draw(seed, 1.0, 12.0)),
-        .least = draw(seed, 0.2, 0.99),
+        .indicator = draw(seed, 0.2, 0.99),
         .jump = project ? RITZ_SWITCH_PROJECT : RITZ_SWITCH_OFFSET};
     if (by_stiffness || project) {
         assert_ok(all_modes(&c->m, &c->library));
@@ -533,7 +535,7 @@ static ritz_status refused_new(refused *r)
     r->switched = (ritz_switched){.num_libraries = 1,
                                   .library = &r->library,
                                   .interval = 0.05,
-                                  .least = 0.9};
+                                  .indicator = 0.9};
     return RITZ_OK;
 }
 
@@ -549,9 +551,9 @@ static void requests_without_sense_are_refused(void **state)
     assert_fails(try_run(&r), RITZ_ERR_ARGUMENT,
                  "the switch interval of 0.015 s is not of whole steps");
     r.switched.interval = 0.05;
-    r.switched.least = 1.0;
+    r.switched.indicator = 1.0;
     assert_fails(try_run(&r), RITZ_ERR_ARGUMENT, "below 1, not 1");
-    r.switched.least = 0.9;
+    r.switched.indicator = 0.9;
     r.switched.hysteresis = -0.1;
     assert_fails(try_run(&r), RITZ_ERR_ARGUMENT, "a hysteresis is");
     r.switched.hysteresis = 0.0;
@@ -629,7 +631,7 @@ static void sets_that_dwell_decay(void **state)
     ritz_dense_free(&r.library);
     assert_ok(ritz_dense_identity(6, &r.library));
     r.switched.jump = RITZ_SWITCH_PROJECT;
-    r.switched.least = 0.5;
+    r.switched.indicator = 0.5;
     (void)ritz_simulate_switched(r.m.dense, &r.request, &r.switched, &report,
                                  &s);
     r.switched.dwell = report.dwell;
@@ -678,7 +680,7 @@ static void ties_do_not_depend_on_rounding(void **state)
         const ritz_switched switched = {.num_libraries = 1,
                                         .library = &library,
                                         .interval = 0.02,
-                                        .least = 0.4};
+                                        .indicator = 0.4};
         ritz_simulation_request request = asking(0.04, 0.01, NULL);
         const double x0[] = {0.7, 0.7 + off[k]};
 
@@ -749,7 +751,7 @@ static void a_force_that_begins_with_the_run_is_found(void **state)
         r.request.hold = holds[k];
         r.request.signal = &sine;
         r.request.seconds = r.switched.interval = 0.5;
-        r.switched.least = 1.0 - 1e-9;
+        r.switched.indicator = 1.0 - 1e-9;
         assert_ok(ritz_simulate(r.m.dense, &r.request, &full));
         assert_ok(ritz_simulate_switched(r.m.dense, &r.request, &r.switched,
                                          NULL, &s));
@@ -772,7 +774,7 @@ static void what_a_set_leaves_out_is_told(void **state)
     ritz_switched switched = {.num_libraries = 1,
                               .library = &library,
                               .interval = 1e-3,
-                              .least = 0.9};
+                              .indicator = 0.9};
     ritz_switched_report report = {0};
 
     (void)state;
@@ -785,13 +787,13 @@ static void what_a_set_leaves_out_is_told(void **state)
     assert_ok(
         ritz_simulate_switched(row.dense, &request, &switched, &report, &s));
     /* R = [1, w; 0, -1e6 x] begins as [1, 0; 0, -10] */
-    assert_near(report.still, 1.0, 1e-15);
-    assert_true(report.still_at == 0.0);
-    switched.least = 1.0 - 1e-9;
+    assert_near(report.left_out, 1.0, 1e-15);
+    assert_true(report.left_out_at == 0.0);
+    switched.indicator = 1.0 - 1e-9;
     ritz_simulation_free(&s);
     assert_ok(
         ritz_simulate_switched(row.dense, &request, &switched, &report, &s));
-    assert_true(report.still == 0.0);
+    assert_true(report.left_out == 0.0);
 }
 
 /* --- runs that are ended early, and failing allocations ------------------- */
@@ -855,7 +857,7 @@ static void a_switched_run_is_continued_bit_for_bit(void **state)
         r.library.val[k] += 0.3 * cos((double)k);
     }
     is_continued(&r);
-    r.switched.ahead = r.switched.within = true;
+    r.switched.look_ahead = r.switched.share_of_library = true;
     is_continued(&r);
 }
 
