@@ -171,9 +171,9 @@ ritz_status ritz_stage_spin(const ritz_stage *stage,
 
 /** The first stiffening that body @p k of a scene that spins needs and does not
  * name; RITZ_NUM_STIFFENINGS if it names all. */
-ritz_status ritz_stage_spin_lacks(const ritz_stage *stage,
-                                  const ritz_configuration *at, int64_t k,
-                                  int *out);
+ritz_status ritz_stage_missing_stiffening(const ritz_stage *stage,
+                                          const ritz_configuration *at,
+                                          int64_t k, int *out);
 
 /**
  * Rates that limit the model of a scene that spins. `stable` is the rate at

@@ -319,7 +319,8 @@ ritz_status ritz_stage_spin(const ritz_stage *stage,
 
 /* The first product of rates that is not 0 and for which the body names no
    geometric stiffness. */
-static int find_lack(const ritz_scene_component *item, const double n[3])
+static int find_missing_stiffening(const ritz_scene_component *item,
+                                   const double n[3])
 {
     for (int s = 0; s < RITZ_STIFFENING_TIP; s++)
         if (fabs(weight_of(s, n)) > RITZ_SAME && !*item->stiffening[s])
@@ -327,16 +328,16 @@ static int find_lack(const ritz_scene_component *item, const double n[3])
     return RITZ_NUM_STIFFENINGS;
 }
 
-ritz_status ritz_stage_spin_lacks(const ritz_stage *stage,
-                                  const ritz_configuration *at, int64_t k,
-                                  int *out)
+ritz_status ritz_stage_missing_stiffening(const ritz_stage *stage,
+                                          const ritz_configuration *at,
+                                          int64_t k, int *out)
 {
     double n[3], foot[3];
     bool flexible = false;
 
     RITZ_CHECK(ritz_spin_is_flexible(&stage->body[k], &flexible));
     find_axis(&stage->scene->spin, &at->places, k, n, foot);
-    *out = flexible ? find_lack(&stage->scene->component[k], n)
+    *out = flexible ? find_missing_stiffening(&stage->scene->component[k], n)
                     : RITZ_NUM_STIFFENINGS;
     return RITZ_OK;
 }

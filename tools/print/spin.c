@@ -23,14 +23,16 @@ static void warn_of_model(cli_run *run, ritz_spin_model kept)
 
 /* Warn of bodies without KG: a consistent model needs one for each product of
    rates. */
-static ritz_status warn_of_lacks(cli_run *run, const ritz_stage *stage,
-                                 const ritz_configuration *at, bool *any)
+static ritz_status warn_of_missing_stiffening(cli_run *run,
+                                              const ritz_stage *stage,
+                                              const ritz_configuration *at,
+                                              bool *any)
 {
     for (int64_t k = 0; k < stage->count; k++) {
-        int lack = 0;
+        int missing = 0;
 
-        RITZ_CHECK(ritz_stage_spin_lacks(stage, at, k, &lack));
-        if (lack == RITZ_NUM_STIFFENINGS)
+        RITZ_CHECK(ritz_stage_missing_stiffening(stage, at, k, &missing));
+        if (missing == RITZ_NUM_STIFFENINGS)
             continue;
         *any = true;
         if (stage->scene->spin.model == RITZ_SPIN_CONSISTENT)
@@ -39,7 +41,7 @@ static ritz_status warn_of_lacks(cli_run *run, const ritz_stage *stage,
                      "geometric stiffness of its deformation is left out, as "
                      "an inconsistent model does",
                      stage->scene->component[k].name,
-                     ritz_stiffening_word[lack]);
+                     ritz_stiffening_word[missing]);
     }
     return RITZ_OK;
 }
@@ -104,19 +106,19 @@ static ritz_status warn_of_pulls(cli_run *run, const ritz_stage *stage,
 
 /* The rate up to which stiffening may be left out, and what it rests on. */
 static void say_negligible(cli_run *run, double rate, double error,
-                           bool estimated, bool lacks)
+                           bool estimated, bool missing)
 {
     if (!isfinite(rate))
         return;
     sink_field(run, "stiffening",
                ",,stiffening_negligible_rate,stiffening_negligible_error",
                "%s up to %s%.6g rad/s: frequencies change by at most %g",
-               lacks ? "that is named may be left out" : "may be left out",
+               missing ? "that is named may be left out" : "may be left out",
                estimated ? "about " : "", rate, error);
 }
 
 static ritz_status say_limits(cli_run *run, const ritz_stage *stage,
-                              const ritz_configuration *at, bool lacks)
+                              const ritz_configuration *at, bool missing)
 {
     const ritz_scene_spin *spin = &stage->scene->spin;
     const double most = highest_rate(&spin->rate);
@@ -128,7 +130,8 @@ static ritz_status say_limits(cli_run *run, const ritz_stage *stage,
     RITZ_CHECK(ritz_stage_spin_limits(stage, at->setting, spin->negligible,
                                       &limits, unpulled));
     RITZ_CHECK(warn_of_pulls(run, stage, at, unpulled, &estimated));
-    say_negligible(run, limits.negligible, spin->negligible, estimated, lacks);
+    say_negligible(run, limits.negligible, spin->negligible, estimated,
+                   missing);
     if (isfinite(limits.stable))
         sink_field(run, "stiffness", "stable_rate",
                    "positive definite up to %.6g rad/s", limits.stable);
@@ -149,7 +152,7 @@ ritz_status spin_say(cli_run *run, const ritz_stage *stage,
 {
     const ritz_scene_spin *spin = &stage->scene->spin;
     const double most = highest_rate(&spin->rate);
-    bool lacks = false;
+    bool missing = false;
 
     if (!spin->given)
         return RITZ_OK;
@@ -159,7 +162,7 @@ ritz_status spin_say(cli_run *run, const ritz_stage *stage,
         cli_say(run, "  %-14s up to %.6g rad/s, %s", "spin", most,
                 ritz_spin_model_name(spin->model));
     warn_of_model(run, spin->model);
-    RITZ_CHECK(warn_of_lacks(run, stage, at, &lacks));
+    RITZ_CHECK(warn_of_missing_stiffening(run, stage, at, &missing));
     RITZ_CHECK(spin_warn_of_loss(run, stage, NULL, "spin"));
-    return say_limits(run, stage, at, lacks);
+    return say_limits(run, stage, at, missing);
 }

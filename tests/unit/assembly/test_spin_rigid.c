@@ -471,10 +471,10 @@ static ritz_status spin_tipped(void *of)
     RITZ_OWN(ritz_configuration) c = {0};
     ritz_spin_limits limits = {0};
     double unpulled[2], mass = 0.0;
-    int lack = 0;
+    int missing = 0;
 
     RITZ_CHECK(ritz_stage_assemble(stage, NULL, &c));
-    RITZ_CHECK(ritz_stage_spin_lacks(stage, &c, 0, &lack));
+    RITZ_CHECK(ritz_stage_missing_stiffening(stage, &c, 0, &missing));
     RITZ_CHECK(ritz_stage_spin_outboard(stage, &c, 0, &mass));
     return ritz_stage_spin_limits(stage, NULL, 0.01, &limits, unpulled);
 }

@@ -337,16 +337,16 @@ static void a_product_without_a_load_is_named(void **)
     RITZ_OWN(ritz_scene) scene = {0};
     RITZ_OWN(ritz_stage) stage = {0};
     RITZ_OWN(ritz_configuration) c = {0};
-    int lack = 0;
+    int missing = 0;
 
     assert_ok(blade_stage(BLADE_SCENE "spin: {axis: [0, 1, 1], rate: 1}\n", 4,
                           &scene, &stage));
     assert_ok(ritz_stage_assemble(&stage, NULL, &c));
-    assert_ok(ritz_stage_spin_lacks(&stage, &c, 0, &lack));
-    assert_int_equal(lack, RITZ_STIFFENING_YZ);
+    assert_ok(ritz_stage_missing_stiffening(&stage, &c, 0, &missing));
+    assert_int_equal(missing, RITZ_STIFFENING_YZ);
     scene.spin.axis[1] = 0.0;
-    assert_ok(ritz_stage_spin_lacks(&stage, &c, 0, &lack));
-    assert_int_equal(lack, RITZ_NUM_STIFFENINGS);
+    assert_ok(ritz_stage_missing_stiffening(&stage, &c, 0, &missing));
+    assert_int_equal(missing, RITZ_NUM_STIFFENINGS);
 }
 
 /* K of the system at rest with W^2 (S + KG), summed over bodies, has the
