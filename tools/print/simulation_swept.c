@@ -206,12 +206,12 @@ static void say_path(const simulation_task *d, const ritz_swept_model *m,
     }
     if (lowest > 0.0)
         sink_field(d->run, "rate", "rate,rate_ratio",
-                   "%.3g rad/s, %.2e of the lowest mode's", fastest,
+                   "%.3g rad/s, %.3g times the lowest frequency", fastest,
                    fastest / lowest);
     if (lowest > 0.0 && fastest >= lowest)
         cli_warn(d->run,
-                 "the joint turns at %.3g times the lowest frequency: forces "
-                 "that are left out are of the square of that",
+                 "the joint turns at %.3g times the lowest frequency: the "
+                 "forces that are left out grow with the square of this ratio",
                  fastest / lowest);
 }
 
