@@ -40,7 +40,7 @@ int main(int argc, char **argv)
         CLI_LIST("geometric-stiffness", &given.load, "F@LOAD",
                  "K_g for a unit of LOAD, tension positive"),
         CLI_LIST("preload", &given.preload, "LOAD=X",
-                 "K + X K_g is the stiffness: X times LOAD acts [none]"),
+                 "X times LOAD acts always: the stiffness is K + X KG [none]"),
         CLI_TEXT("superelement", &given.superelement, "F.op4",
                  "all of these of NASTRAN's EXTSEOUT, rows by F.pch or F.asm"),
         CLI_TEXT("bulk", &it->bulk, "F",

@@ -123,8 +123,8 @@ static const cli_program program = {
                  "vectors are added until their share of the residual is "     \
                  "above E, at most 1 - 1e-9 [0.99]"),                          \
         CLI_WORD("share-of", &(it)->share_of, "model|library",                 \
-                 "the share of --indicator is of the whole residual, or of "   \
-                 "its part in the library [model]"),                           \
+                 "--indicator is relative to the whole residual, or to its "   \
+                 "part in the library [model]"),                               \
         CLI_FLAG(                                                              \
             "look-ahead", &(it)->look_ahead,                                   \
             "choose vectors for the inputs at the end of a switch interval "   \

@@ -137,7 +137,7 @@ beside '[0, 0.001, 1]'
 json 0 ritz-assemble beside.yaml -o beside.h5
 holds '  an axis that is off by 1e-3 locks the turn, and this is said' '
     len(j["configurations"][0]["frequencies_hz"]) == 6 and
-    "locks a motion of its loop, because it departs by 0.001 rad from [0, 0, 1]"
+    "locks a motion of its loop, because it is off by 0.001 rad from [0, 0, 1]"
     in j["warnings"][0]'
 beside '[0, 0.5, 1]'
 json 0 ritz-assemble beside.yaml -o beside.h5

@@ -132,14 +132,14 @@ expect 0 'may be left out up to about 0.1006' ritz-assemble slow.yaml -o x.h5
 
 # A step that no change of the rate resolves.
 sed 's/to: 6, seconds: 15/to: 1, seconds: 0.1/' spin-up.yaml >quick.yaml
-expect 0 'the step of 0.2 s is longer than the 0.1 s within which the rate' \
+expect 0 'the step of 0.2 s is longer than the 0.1 s in which the rate' \
     ritz-simulate quick.yaml --method trapezoidal --step 0.2 --seconds 1 -o x.h5
 json 0 ritz-simulate quick.yaml --method trapezoidal --step 0.1 --seconds 1 \
     -o x.h5
 holds '  a step as long as the ramp has no warning' 'not j["warnings"]'
 sed 's/ramp: .*/profile: [[0, 0], [0.5, 0], [0.6, 1], [9, 1]]}/' spin-up.yaml \
     >jump.yaml
-expect 0 'the step of 0.2 s is longer than the 0.1 s within which the rate' \
+expect 0 'the step of 0.2 s is longer than the 0.1 s in which the rate' \
     ritz-simulate jump.yaml --method trapezoidal --step 0.2 --seconds 1 -o x.h5
 
 # Refusals.

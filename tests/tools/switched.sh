@@ -129,7 +129,7 @@ expect 1 'sets that dwell' $run --damping 'rayleigh 1 1e-3' \
 expect 1 'is an eigenvector of M' $run --damping 'rayleigh 10 0' \
     --switched modes --inner euclidean
 expect 1 'a library of 2 rows is of another model' $run --switched a.mtx
-expect 1 "'modes:x' is no number of modes" $run --switched modes:x
+expect 1 "'modes:x' is not a number of modes" $run --switched modes:x
 expect 1 'a library without a name' $run --switched modes:3,
 expect 1 'damping ratios of a component' $run --damping 'modal 0.01' \
     --switched modes:3

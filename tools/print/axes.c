@@ -1,4 +1,4 @@
-/* What tools say of axes in loops that a scene gives with too few digits. */
+/* Warnings about axes in loops that a scene gives with too few digits. */
 #include "print/print.h"
 
 #include "base/alloc.h"
@@ -31,15 +31,16 @@ static void warn_of_one(cli_run *run, const ritz_joint *joint,
     print_axis(a->exact, text);
     if (a->taken)
         cli_warn(run,
-                 "the %s of joint '%s' is taken as %s, from which it departs "
-                 "by %.3g rad: its loop could not move otherwise. Write it so, "
-                 "or lock the joint if the loop is not to move",
+                 "the %s of joint '%s' is taken as %s, because its loop could "
+                 "not move with the given one, which is off by %.3g rad. Write "
+                 "that axis in the scene, or lock the joint if the loop should "
+                 "not move",
                  which, joint->name, text, a->angle);
     else
         cli_warn(run,
                  "the %s of joint '%s' locks a motion of its loop, because it "
-                 "departs by %.3g rad from %s. Write that if the loop is to "
-                 "move",
+                 "is off by %.3g rad from %s. Write that axis if the loop "
+                 "should move",
                  which, joint->name, a->angle, text);
 }
 
@@ -49,20 +50,20 @@ static void warn_of_several(cli_run *run, const ritz_joint *joint,
     if (a->taken)
         cli_warn(run,
                  "the axes of joint '%s' and %ld more of its loop are turned "
-                 "by up to %.3g rad: the loop could not move otherwise. Write "
-                 "axes with more digits, or lock a joint if the loop is not to "
-                 "move",
+                 "by up to %.3g rad, because the loop could not move "
+                 "otherwise. Write axes with more digits, or lock a joint if "
+                 "the loop should not move",
                  joint->name, a->others, a->angle);
     else
         cli_warn(run,
                  "the axes of joint '%s' and %ld more of its loop lock a "
-                 "motion, because they depart by up to %.3g rad from "
-                 "directions in which the loop could move. Write these if it "
-                 "is to move",
+                 "motion, because they are off by up to %.3g rad from "
+                 "directions in which the loop could move. Write axes with "
+                 "more digits if it should move",
                  joint->name, a->others, a->angle);
 }
 
-/* The one of an axis that departs most, of those in all configurations. */
+/* Keep the largest angle of each axis over all configurations. */
 static ritz_status keep_worst(const ritz_near_axes *found, ritz_near_axes *all)
 {
     for (int64_t k = 0; k < found->count; k++) {

@@ -273,8 +273,8 @@ static ritz_status simulate_response(simulation_task *d)
     RITZ_REFUSE_IF(cli_given(run, "up-to-hz") && !given->sweep &&
                        d->subject.kind != RITZ_MODEL_COMPONENT,
                    RITZ_ERR_ARGUMENT,
-                   "--up-to-hz is for components, whose modes are computed: "
-                   "this model is taken with all of its own");
+                   "--up-to-hz is for components, whose modes are computed; "
+                   "all coordinates of this model are used");
     RITZ_REFUSE_IF(kind && given->step == 0.0, RITZ_ERR_ARGUMENT,
                    "%s needs --step: no step is chosen by an accuracy",
                    kind->option);

@@ -108,9 +108,9 @@ static void warn_of_ringing(cli_run *run, double step,
                  step, 1.0 / (RITZ_PI * step));
     if (facts->force_rounding > RITZ_FORCE_ROUNDING)
         cli_warn(run,
-                 "springs are so stiff that up to %.1e of the forces in the "
-                 "joints are rounding after a load that jumps; positions are "
-                 "not",
+                 "springs are so stiff that, after a load jumps, up to %.1e of "
+                 "the forces in the joints are rounding; positions are "
+                 "accurate",
                  facts->force_rounding);
 }
 

@@ -33,8 +33,8 @@ static void warn_of_step(const simulation_task *task,
 
     if (request->step > least * (1.0 + RITZ_SAME))
         cli_warn(task->run,
-                 "the step of %g s is longer than the %g s within which the "
-                 "rate of spin changes: only the mean of that change acts",
+                 "the step of %g s is longer than the %g s in which the rate "
+                 "of spin changes: only the mean of that change acts",
                  request->step, least);
 }
 

@@ -350,9 +350,9 @@ static void warn_of_rigid(const simulation_task *d)
         cli_warn(
             d->run,
             "%" PRId64 " rigid motions: forces of the commanded motion "
-            "that turn with the bodies are left out, and rigid motions are "
-            "off by about the square of the angle in radians, exponentially "
-            "over whole turns",
+            "that turn with the bodies are left out, so that the error of "
+            "rigid motions is about the square of the angle in radians, and "
+            "grows exponentially over whole turns",
             count);
 }
 

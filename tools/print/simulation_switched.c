@@ -57,7 +57,8 @@ static ritz_status take_modes(const simulation_task *task, const char *count,
     int64_t modes = n;
 
     RITZ_REFUSE_IF(*count && (!ritz_text_whole(count + 1, &modes) || modes < 1),
-                   RITZ_ERR_ARGUMENT, "'modes%s' is no number of modes", count);
+                   RITZ_ERR_ARGUMENT, "'modes%s' is not a number of modes",
+                   count);
     if (s->kind == RITZ_MODEL_COMPONENT) {
         const ritz_span span = {.modes = modes < n ? modes : n - 1};
         RITZ_OWN(ritz_dense) K = {0}, M = {0};
@@ -105,7 +106,7 @@ static ritz_status check_origin(cli_run *run, const char *path)
         cli_warn(
             run,
             "the basis '%s' was made from '%s', whose SHA-256 differs from "
-            "that of '%s': are its vectors of this model?",
+            "that of '%s': does it belong to this model?",
             path, strstr(made.input[0], "  ") + 2, run->operand[0]);
     return RITZ_OK;
 }
@@ -174,7 +175,7 @@ ritz_status simulation_switched_prepare(simulation_task *task)
     return RITZ_OK;
 }
 
-/* What sets left out although it moved. */
+/* Print the largest kinetic energy that a set left out at a switch. */
 static void say_left_out(cli_run *run, const ritz_switched *asked,
                          const ritz_switched_report *r)
 {
@@ -189,9 +190,9 @@ static void say_left_out(cli_run *run, const ritz_switched *asked,
         cli_warn(
             run,
             "the set that begins at %.6g s leaves out %.3g %% of the kinetic "
-            "energy, which %s: an --indicator nearer to 1 leaves out less",
+            "energy, which %s: an --indicator closer to 1 leaves out less",
             r->left_out_at, 100.0 * r->left_out,
-            offset ? "stands still from then on" : "is lost");
+            offset ? "is held constant from then on" : "is lost");
 }
 
 static void say_report(cli_run *run, const ritz_switched *asked,
