@@ -111,16 +111,16 @@ ritz_status ritz_stage_unjoined(const ritz_stage *stage, const double *setting,
                                 const ritz_damping *damping,
                                 ritz_unjoined *out);
 
-/* An axis of a joint in a closed loop that departs a little from a direction in
-   which the loop can move. */
+/* An axis of a joint in a closed loop that differs slightly from a direction
+   with which the loop can move. */
 typedef struct ritz_near_axis {
     int64_t joint;   /* of the scene */
     int which;       /* 0; 1: the second axis of a universal joint */
-    double angle;    /* from that direction, rad */
-    bool taken;      /* joints are joined as if it had that direction; false: it
-                      has its own and locks the motion */
+    double angle;    /* between the axis and that direction, rad */
+    bool taken;      /* that direction is used; false: the given axis is used,
+                      and locks the motion */
     double exact[3]; /* that direction, in the axes that the scene uses */
-    int64_t others;  /* axes of its loops that depart too */
+    int64_t others;  /* further axes of its loops that differ */
 } ritz_near_axis;
 
 typedef struct ritz_near_axes {
@@ -129,21 +129,22 @@ typedef struct ritz_near_axes {
 } ritz_near_axes;
 
 /**
- * Axes in loops at some settings that a scene gives with too few digits. Up to
- * 1e-4 rad they are taken as meant, up to 1e-2 they are taken as given, though
- * they lock a motion. Axes that agree to 1e-9 are not listed.
+ * List axes in closed loops that a scene gives with too few digits, at one
+ * setting of its joints. If the angle is at most 1e-4 rad, the axis is
+ * corrected; if it is at most 1e-2 rad, the given axis is used and locks a
+ * motion. Angles below 1e-9 are not listed.
  */
 ritz_status ritz_stage_near_axes(const ritz_stage *stage, const double *setting,
                                  ritz_near_axes *out);
 void ritz_near_axes_free(ritz_near_axes *axes);
 
-/** The same of a scene whose bodies are not reduced; its models are read if
- * joints close a loop. */
+/** As ritz_stage_near_axes, for a scene whose bodies are not reduced; its
+ * models are read if joints close a loop. */
 ritz_status ritz_scene_near_axes(const ritz_scene *scene, const double *setting,
                                  ritz_near_axes *out);
 
 /**
- * Which of the coordinates of all bodies are those of each body.
+ * Ranges of each body's coordinates in the coordinates of all bodies.
  *
  * @param[out] out  stage->count, freed by the caller
  */
@@ -169,8 +170,9 @@ ritz_status ritz_assemble(const ritz_stage *stage, const char *at,
 ritz_status ritz_stage_spin(const ritz_stage *stage,
                             const ritz_configuration *at, ritz_spin_terms *out);
 
-/** The first stiffening that body @p k of a scene that spins needs and does not
- * name; RITZ_NUM_STIFFENINGS if it names all. */
+/** The first product of rates for which body @p k of a spinning scene needs a
+ * geometric stiffness and names none; RITZ_NUM_STIFFENINGS if none is
+ * missing. */
 ritz_status ritz_stage_missing_stiffening(const ritz_stage *stage,
                                           const ritz_configuration *at,
                                           int64_t k, int *out);
@@ -182,9 +184,9 @@ ritz_status ritz_stage_missing_stiffening(const ritz_stage *stage,
  * frequency up to the end of the band (of all modes if there is no band) by
  * more than @p error.
  *
- * A flexible body that bodies outboard pull at needs the stiffening `tip`. If
- * it names none, the stiffness of that pull is estimated, and included in
- * `negligible` although the model does not have it.
+ * A flexible body needs the stiffening `tip` if outboard bodies pull at it. If
+ * it names none, the stiffness due to that pull is estimated; `negligible`
+ * includes the estimate, but the model does not.
  *
  * @param[out] unpulled  a rate for each body, up to which leaving out that
  *                       estimate changes no frequency by more than @p error;

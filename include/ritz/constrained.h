@@ -67,8 +67,8 @@ typedef struct ritz_stabilisation {
     ritz_gain gain[RITZ_MOST_GAINS];   /* unused ones have no name */
     const ritz_integrator *integrator; /* used where `modal` is requested;
                                           NULL: the method is an integrator */
-    /** Set the parameters that are NaN. Those that are given may decide about
-     * the others. */
+    /** Set the parameters that are NaN. Their defaults may depend on the given
+     * ones. */
     void (*choose)(const ritz_gain_scales *scales, double *gain);
     ritz_status (*terms)(const double *gain, struct ritz_stabiliser *out);
 } ritz_stabilisation;
@@ -109,11 +109,12 @@ typedef struct ritz_constrained_facts {
     double highest_hz;     /* the same with the terms of the method */
     double step_limit;     /* s, of central differences; HUGE_VAL: no limit */
     double step_cost;      /* processor time of a step, s, as measured */
-    double force_rounding; /* eps (w h)^2 / 4 of penalty springs: the part of
-                              the joint forces that is rounding after a load
-                              that jumps. Else 0 */
-    double moved;      /* start of projection and index-2: by which part of the
-                          displacements it was moved, relative in M */
+    double force_rounding; /* eps (w h)^2 / 4 of penalty springs: relative
+                              rounding error of the joint forces after a load
+                              jumps; 0 without springs */
+    double moved;      /* projection and index-2: relative change of the initial
+                          displacements in the norm of M, which satisfies the
+                          constraints */
     double moved_rate; /* the same of velocities */
     bool unresolved;   /* the frequency of penalty springs is above 2 / step, so
                           that with an implicit integrator forces oscillate from

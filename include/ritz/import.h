@@ -292,7 +292,7 @@ typedef struct ritz_import_request {
     int64_t num_loads;
     const char *const *load; /* "F@LOAD" */
     int64_t num_preloads;
-    const char *const *preload; /* "LOAD=X": K becomes K + X KG */
+    const char *const *preload; /* "LOAD=X": stiffness K + X KG of LOAD */
     const char *bulk;           /* file of a deck */
     const char *dofs; /* file of `GRID COMP` rows, or `NODE.COMP` ones */
     const char *rows; /* directions of every grid, "126"; "0": scalar points */

@@ -118,8 +118,8 @@ typedef struct ritz_history_request {
     bool floating; /* coordinates of a frame may come before those of `order` */
     double step;   /* of formats without times, s; 0: not known */
     int64_t label; /* of the body, in a file with several; 0: the first one */
-    const char *body; /* in a simulation that has the coordinates of several;
-                         NULL: it has those of one model */
+    const char *body; /* name of the body, if a simulation has coordinates of
+                         several; NULL: it has those of a single model */
 } ritz_history_request;
 
 typedef struct ritz_history {
@@ -165,8 +165,8 @@ ritz_status ritz_history_open(const char *path,
                               const ritz_history_request *request,
                               ritz_history *out);
 
-/** Read the coordinates that a simulation has stored, of one body if it has
- * those of several; it is borrowed.
+/** Read the coordinates that a simulation has stored; if it has those of
+ * several bodies, those of request->body. The simulation is borrowed.
  * @return RITZ_ERR_ARGUMENT if it has none, or not request->order, or no such
  *         body */
 ritz_status ritz_history_of_simulation(const ritz_simulation *simulation,

@@ -220,7 +220,7 @@ ritz_io ritz_response_io(const ritz_response *response);
  */
 ritz_status ritz_response_read_table(const char *path, ritz_response *out);
 
-/** Whether a file is text, as such a table is and no container. */
+/** Whether a file is text, so that it may be such a table but no container. */
 bool ritz_response_table_seems(const char *path);
 
 /**
@@ -307,9 +307,9 @@ typedef struct ritz_loop {
 
 /**
  * Join by name: each input of the controller is called as an output of the
- * plant, each output as an input of the plant, unless a pair says otherwise. A
- * plant and a controller of one input and one output each are joined whatever
- * their names if those of one of them are u1 and y1, which nobody gave.
+ * plant, each output as an input of the plant, unless a pair says otherwise. If
+ * plant and controller have one input and one output each, and one of them has
+ * the default names u1 and y1, they are joined whatever the names of the other.
  *
  * @param[in] pair  "OUT=IN", as a signal flows: an output of the plant into the
  *                  controller, or one of the controller into the plant

@@ -242,8 +242,8 @@ ritz_status ritz_scene_parse(const char *path, const char *text,
 /**
  * Index of a sweep by its name, "clock" or "wrist.2".
  *
- * @return RITZ_ERR_ARGUMENT if there is none of that name, or the joint has
- *         nothing to set
+ * @return RITZ_ERR_ARGUMENT if no sweep has that name, or the joint has no
+ *         setting
  */
 ritz_status ritz_scene_sweep(const ritz_scene *scene, const char *name,
                              int64_t *out);

@@ -55,7 +55,8 @@ typedef struct ritz_signal {
  */
 ritz_status ritz_signal_parse(const char *text, ritz_signal *out);
 
-/** A file of two columns alone. @return RITZ_ERR_FILE, RITZ_ERR_FORMAT */
+/** Read a signal from a file of two columns, time and value.
+ * @return RITZ_ERR_FILE, RITZ_ERR_FORMAT */
 ritz_status ritz_signal_read(const char *path, ritz_signal *out);
 
 /** Whether a text names a file: it begins with none of these words. */
@@ -147,10 +148,10 @@ typedef struct ritz_simulation {
     double *diagnosis;                  /* diagnosis[k * num_diagnostics + j] */
     int64_t num_coordinates; /* of the model; 0: they are not stored */
     double *q, *v, *a;       /* q, q' and q'': q[k * num_coordinates + j] */
-    int64_t num_blocks;      /* 0: they are those of the model that was run */
-    ritz_block *block;       /* else those of bodies, one after the other */
-    char spin[4 * RITZ_NAME_SIZE]; /* the frame turns, as `spin` of a system
-                                      says; "": it is at rest */
+    int64_t num_blocks;      /* 0: coordinates belong to the simulated model */
+    ritz_block *block;       /* else to bodies, one after the other */
+    char spin[4 * RITZ_NAME_SIZE]; /* spin of the frame, as `spin` of a
+                                      system; "": it is at rest */
     int64_t num_state;             /* 0: the run came to its end */
     double *state;                 /* from which the run is continued */
     char integrator[RITZ_NAME_SIZE];

@@ -83,7 +83,7 @@ typedef struct ritz_swept_model {
     ritz_dense start;     /* e x r: q = start' x0, with x0 in all e modes of the
                            system at the start */
     ritz_dense start_B;   /* e x inputs, in the same modes */
-    int64_t start_rigid;  /* how many of these modes are rigid motions */
+    int64_t start_rigid;  /* number of rigid motions among these modes */
     double *start_lambda; /* e: their eigenvalues, rigid ones 0 */
     double start_hz[2]; /* lowest flexible and highest frequency at the start */
     double error;       /* of the spline between knots, as measured by
@@ -126,17 +126,17 @@ ritz_status ritz_stage_sweep(const ritz_stage *stage,
 
 void ritz_swept_model_free(ritz_swept_model *model);
 
-/* Shares of something at the start that a basis does not span, 0 to 1; 0 of
-   something that is zero. */
+/* Shares of the initial state that a basis does not span, 0 to 1; 0 if the
+   initial value itself is zero. */
 typedef struct ritz_swept_lost {
     double displacement, velocity; /* in the norm of the mass */
     double strain;                 /* of the strain energy of displacements */
-    bool all; /* a state is given, and less than 1e-6 of it is left */
+    bool all; /* a state is given, and the basis spans less than 1e-6 of it */
 } ritz_swept_lost;
 
 /**
- * What the basis does not span of an initial state: the norm of d = x0 - S S'x0
- * relative to that of x0, squared, S = start.
+ * Shares of an initial state that the basis does not span: d'd / x0'x0 with
+ * d = x0 - S S'x0, S = start.
  *
  * @param[in] x0, v0  of all modes at the start; NULL: zero
  */
@@ -148,7 +148,7 @@ ritz_status ritz_swept_lost_state(const ritz_swept_model *model,
  * The share of the strain energy of an input's static response that the basis
  * does not span.
  *
- * @param[out] out  NaN if the input moves rigid motions, or no elastic one
+ * @param[out] out  NaN if the input excites rigid motions, or no elastic mode
  */
 ritz_status ritz_swept_lost_force(const ritz_swept_model *model, int64_t input,
                                   double *out);
@@ -169,7 +169,7 @@ ritz_status ritz_swept_lost_force(const ritz_swept_model *model, int64_t input,
  * @return RITZ_ERR_ARGUMENT if the path leaves the range of the model, if a
  *         hinge turns by more than a quarter turn in a step, if the path
  *         ends before the run while the setting still moves, or if the basis
- *         spans nothing of the initial state
+ *         spans less than 1e-6 of the initial state
  * @cost   O(r^3) a step, and O(Q^2 r) each time x passes a knot
  */
 ritz_status ritz_simulate_swept(const ritz_swept_model *model,

@@ -75,11 +75,11 @@
 /* Gap and turn of a closed loop, over its size: a scene gives angles and
    positions with five digits or so. */
 #define RITZ_LOOP_CLOSURE 1e-4
-/* An axis in a loop that departs more than this, in rad, from where the loop can
-   move is meant to lock it. */
+/* An axis in a loop is meant to lock it if it is off by a larger angle, in rad,
+   from a direction with which the loop can move. */
 #define RITZ_AXIS_NEAR 1e-2
-/* What turns of axes may leave of a loop that they release, to first order: the
-   second is a part RITZ_AXIS_NEAR and its like. */
+/* Largest relative residual, to first order, after axes are turned to release a
+   loop; terms of second order are about RITZ_AXIS_NEAR of it. */
 #define RITZ_AXIS_LEFT 0.05
 /* Two turns of axes that differ by less than this factor are equal. */
 #define RITZ_AXIS_TIE 1.01
@@ -106,11 +106,11 @@
 /* The setting at which a mode leaves a band is found to this part of the
    range. */
 #define RITZ_SWEPT_CHANGE 1e-4
-/* A share of the initial state that a basis leaves out is told above this: 3 %
-   of the amplitude. */
+/* A run warns if a basis leaves out a larger share of the initial state: 3 % of
+   the amplitude. */
 #define RITZ_SWEPT_LOST 1e-3
-/* An initial state of which less than this share is left does not move: 0.1 %
-   of the amplitude. */
+/* A run is refused if a basis spans a smaller share of the initial state, as
+   nothing would move: 0.1 % of the amplitude. */
 #define RITZ_SWEPT_LEFT 1e-6
 /* An input whose static response a basis leaves out by more than this share
    hardly acts: most of its effect is missing. Local flexibility next to an
@@ -332,9 +332,9 @@
 #define RITZ_SHIFT_FARTHER 1e2
 /* Convergence of ARPACK: eigenvalues err by its square. */
 #define RITZ_ARNOLDI_SETTLED 1e-12
-/* An end of a spectrum A x = theta B x is given if its residual and rounding of B
-   change it by no more than this part of itself. It is a bound: a column of 1000
-   elements, which has 1e-3, errs by 1.5e-4. */
+/* An eigenvalue at an end of the spectrum of A x = theta B x is accepted if its
+   residual and the rounding of B change it by at most this, relatively. This is
+   a bound: a column of 1000 elements has the bound 1e-3, the error 1.5e-4. */
 #define RITZ_END_ERROR 1e-4
 /* Rounding of x'K x, relative to lambda, above which pairs are computed again
    with sums of twice the digits. Rounding below this leaves errors of up to
@@ -827,16 +827,14 @@
    relative to its terms: some eps, as each is a sum of as many terms as there
    are constraints. */
 #define RITZ_LAW_SOLVED 1e-13
-/* A violation of the initial values below this part of the terms whose sum it
-   is, is rounding: some hundred terms, in coordinates that are themselves
-   rounded. */
+/* A violation of the initial values is a sum of terms. Below this part of them
+   it is rounding: some hundred terms, in coordinates that are rounded too. */
 #define RITZ_VIOLATION_ROUNDING 1e-13
-/* A start that is moved by a larger part of itself, to satisfy the constraints,
-   may not be the one that was meant: values of three digits are moved by
-   less. */
+/* A run warns if initial values change by a larger part of their size to
+   satisfy the constraints: values given to three digits change by less. */
 #define RITZ_START_MOVED 1e-3
-/* Rounding of the forces of stiff springs, relative to the forces, of which a
-   run warns. */
+/* A run warns if the relative rounding error of the forces of stiff springs is
+   larger. */
 #define RITZ_FORCE_ROUNDING 1e-3
 /* Frequency up to which parameters of a constraint are chosen with an explicit
    integrator, as part of what the step allows: a tenth is kept free. */
@@ -857,8 +855,9 @@
 #define RITZ_STEP_LEAST       1e-3
 /* A loop that still grows at a step this many times finer does so by its delay. */
 #define RITZ_STEP_FINER 8.0
-/* What a loop adds to the matrices of an exact step is rounding below so many
-   times (4 + |A| h) of their norm: the exponential itself errs by eps |A| h. */
+/* The part that a loop adds to the matrices of an exact step is rounding below
+   this times (4 + |A| h) of their norm: the exponential itself has an error of
+   eps |A| h. */
 #define RITZ_STEP_MATRIX_ROUNDING 0x1p-52
 #define RITZ_STEP_MATRIX_LEAST    4.0
 /* A map of more numbers than 160 is applied to a vector so often, four times;
@@ -1130,7 +1129,7 @@
 /* A set that leaves more than this share of the kinetic energy out is warned
    of: 3 % of the velocity. Runs that are as good as the fixed model of their
    library stay below, and those that lose a rigid motion are above. */
-#define RITZ_SWITCH_STILL 1e-3
+#define RITZ_SWITCH_LEFT_OUT 1e-3
 /* A vector is an eigenvector of M, D or K if it is off by no more than this:
    iterated modes are good to the root of their residuals, 1e-16. What energy
    the rest can raise is below |D| times this a second. */

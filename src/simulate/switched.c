@@ -125,7 +125,7 @@ static void project_state(ritz_march *march, switching *s)
     march->dissipated -= change;
 }
 
-/* What of the kinetic energy a new set does not move. */
+/* Note the largest share of the kinetic energy that a new set leaves out. */
 static void note_left_out(const ritz_march *march, switching *s)
 {
     const int64_t n = s->library->n;

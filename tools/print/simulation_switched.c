@@ -186,7 +186,7 @@ static void say_left_out(cli_run *run, const ritz_switched *asked,
         "a share of %.2g of the kinetic energy, by the set that begins at "
         "%.6g s",
         r->left_out, r->left_out_at);
-    if (r->left_out > RITZ_SWITCH_STILL)
+    if (r->left_out > RITZ_SWITCH_LEFT_OUT)
         cli_warn(
             run,
             "the set that begins at %.6g s leaves out %.3g %% of the kinetic "
