@@ -1,10 +1,10 @@
 /*
  * Axes of joints in closed loops. A scene gives them with a few digits, and an
- * axis that departs by those digits from the direction in which a loop can move
- * takes this motion away.
+ * axis that is off by this rounding from a direction with which the loop can
+ * move locks the motion.
  *
- * With bodies taken as rigid, each motion k that a joint leaves is a twist, a
- * rotation and the velocity at a point o that moves with the body,
+ * If bodies are taken as rigid, each motion k that a joint allows is a twist: a
+ * rotation, and the velocity at a point o that moves with the body,
  *
  *     a_k = (s, (x - o) x s) of an axis s through x,   a_k = (0, s) of a slide,
  *
@@ -35,7 +35,7 @@
 
 enum { TWIST = 6, MOST_PASSES = 12 };
 
-/* A motion that a joint leaves, in the axes of the first body of its tree. */
+/* A motion that a joint allows, in the axes of the first body of its tree. */
 typedef struct joint_motion {
     int64_t joint;
     int which; /* axis of the joint; -1: the motion has none that may turn */
@@ -63,7 +63,7 @@ static void free_loops(loops *l)
     free(l->motion);
 }
 
-/* The motions that joints leave. */
+/* The motions that joints allow. */
 
 /* Rotation and place of a body, rows of ritz_configuration.places. */
 static void read_place(const ritz_dense *places, int64_t body, double R[9],
@@ -148,7 +148,7 @@ static int count_motions(ritz_joint_type type)
     return 0;
 }
 
-/* Middle and size of a loop: of the points at which its joints act. */
+/* Mean and extent of the points at which the joints of a loop act. */
 static void measure_loop(const ritz_stage *stage, const ritz_dense *places,
                          loops *l, int64_t k)
 {
@@ -333,9 +333,9 @@ static ritz_status solve_symmetric(const ritz_dense *N, double *x)
 }
 
 /*
- * Turns of motions first to first + count - 1 after which they are turned least
- * in all and leave least of U_2'A V_2: with c the turns so far,
- * N (c + t) = right + N c. Returns in @p left what is left of it, relative.
+ * Turns t of motions first to first + count - 1 that minimise U_2'A V_2 and,
+ * among these, the total turns c + t, with c the turns so far:
+ * N (c + t) = right + N c. @p left is the relative remainder of U_2'A V_2.
  */
 static ritz_status solve_turns(const loops *l, const turns *all, int64_t first,
                                int64_t count, double *t, double *left)
@@ -381,7 +381,7 @@ static void turn_motion(ritz_plane plane, const double t[2], joint_motion *m)
 
 /*
  * Newton's method for rank @p r by turns of motions first to first + count - 1.
- * Where the steps do not end, or an axis turns too far, *found is false.
+ * If it does not converge, or an axis turns too far, *found is false.
  */
 static ritz_status try_turns(const ritz_scene *scene, int64_t r, int64_t first,
                              int64_t count, loops *l, bool *found)
@@ -418,8 +418,8 @@ static ritz_status try_turns(const ritz_scene *scene, int64_t r, int64_t first,
     return RITZ_OK;
 }
 
-/* How many other axes of the loops a motion's axis is parallel to, to a small
-   part of the angle by which it was turned. */
+/* Count the other axes of the loops that are parallel to a motion's axis, to a
+   small part of the angle by which it was turned. */
 static int64_t count_parallel(const loops *l, const joint_motion *m)
 {
     int64_t count = 0;

@@ -201,8 +201,8 @@ static ritz_status add_pulls(const ritz_stage *stage, const ritz_dense *places,
     return RITZ_OK;
 }
 
-/* B of an arm between the port that holds body k and the body's own: all that
-   it carries pulls at its end. */
+/* B of the arm between the port that holds body k and the body's own port: the
+   body and all bodies outboard of it pull at the end of the arm. */
 static ritz_status find_arm_pull(const ritz_stage *stage,
                                  const ritz_dense *places, int64_t k,
                                  const ritz_spin_joints *joints, double B[9])
@@ -228,8 +228,8 @@ static ritz_status find_arm_pull(const ritz_stage *stage,
 }
 
 /* Add the stiffness of the rotation of body k as a whole about the port that
-   holds it. Loads that the scene names include that of the body, but not that
-   of an arm to it. */
+   holds it. Loads that the scene names include the body's own stiffness, but
+   not that of an arm to it. */
 static ritz_status stiffen_turn(const ritz_stage *stage,
                                 const ritz_dense *places, int64_t k,
                                 const ritz_spin_joints *joints,

@@ -73,8 +73,8 @@ static ritz_status find_inboard(const ritz_stage *stage, int64_t k,
     return RITZ_OK;
 }
 
-/* Mass and pull of the bodies from @p start on that are not taken yet, which
-   then are. */
+/* Add mass and pull of the bodies from @p start outwards that are not taken
+   yet, and mark them as taken. */
 static ritz_status add_outboard(const ritz_stage *stage,
                                 const ritz_dense *places, int64_t start,
                                 int64_t k, bool *taken, ritz_spin_outlet *out)
@@ -121,7 +121,7 @@ static void find_origin(const ritz_stage *stage, const ritz_dense *places,
     ritz_turn_back(R, x, out);
 }
 
-/* Side s of a joint is on body k. */
+/* Add a joint whose side s is on body k. */
 static ritz_status add_joint(const ritz_stage *stage, const ritz_dense *places,
                              const ritz_joint *joint, int s, bool *taken,
                              ritz_spin_joints *joints)

@@ -1,5 +1,5 @@
-/* The steps of ritz_stage_sweep: bases at some settings of a joint, which are
-   aligned with each other and interpolated. */
+/* Steps of ritz_stage_sweep: compute bases at several settings of a joint,
+   align and interpolate them. */
 #ifndef RITZ_ASSEMBLY_SWEPT_H
 #define RITZ_ASSEMBLY_SWEPT_H
 
@@ -40,10 +40,10 @@ static inline const char *ritz_sweep_name(const ritz_sweeper *w)
 
 void ritz_sweep_grid_free(ritz_sweep_grid *grid);
 
-/** The first grid. */
+/** Compute the first grid. */
 ritz_status ritz_sweep_begin(const ritz_sweeper *w, ritz_sweep_grid *out);
 
-/** Knots half way between those of a grid. */
+/** Compute the knots half way between those of a grid. */
 ritz_status ritz_sweep_middles(const ritz_sweeper *w,
                                const ritz_sweep_grid *grid,
                                ritz_sweep_grid *out);
@@ -51,7 +51,7 @@ ritz_status ritz_sweep_middles(const ritz_sweeper *w,
 /** Merge both grids into @p grid; the other one is left empty. */
 ritz_status ritz_sweep_merge(ritz_sweep_grid *grid, ritz_sweep_grid *middles);
 
-/** A grid of one knot, at x. */
+/** Compute a grid of a single knot, at x. */
 ritz_status ritz_sweep_one(const ritz_sweeper *w, double x,
                            ritz_sweep_grid *out);
 
@@ -63,7 +63,7 @@ int64_t ritz_sweep_count_modes(const ritz_sweep_knot *k, double up_to_hz);
 ritz_status ritz_sweep_check(const ritz_sweeper *w,
                              const ritz_sweep_grid *grid);
 
-/** V'M T, V the r modes of a knot. */
+/** V'M T, with V the r modes of a knot. */
 ritz_status ritz_sweep_correlate(const ritz_dense *V, const ritz_dense *M,
                                  const ritz_dense *T, ritz_dense *out);
 

@@ -1,5 +1,4 @@
-/* The settings of a joint at which a basis is computed, and what holds at all
-   of them. */
+/* The settings of a joint at which a basis is computed, and checks on them. */
 #include "assembly/swept.h"
 
 #include "base/alloc.h"

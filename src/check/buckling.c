@@ -91,7 +91,7 @@ ritz_status ritz_buckling_dense(const ritz_dense *K, const ritz_dense *KG,
 
 /* ---- sparse ------------------------------------------------------------- */
 
-/* A load whose factors are looked for in one direction, +1 or -1. */
+/* A load and the direction, +1 or -1, in which its factor is searched. */
 typedef struct directed {
     const ritz_sparse *K, *KG;
     double sign;
@@ -106,7 +106,7 @@ static ritz_status count_factors(const directed *to, double s, int64_t *out)
     return ritz_inertia_negative(&A, NULL, out);
 }
 
-/* No factor is nearer to 0 than @p s. */
+/* Check that no factor is closer to 0 than @p s. */
 static ritz_status prove_none(const directed *to, double s)
 {
     int64_t count = 0;
@@ -117,7 +117,7 @@ static ritz_status prove_none(const directed *to, double s)
     return RITZ_OK;
 }
 
-/* The factor next to @p s. K + s KG is definite. */
+/* Find the factor closest to @p s, where K + s KG is definite. */
 static ritz_status find_beyond(const directed *to, double s, double *mu)
 {
     RITZ_OWN(ritz_sparse) A = {0};

@@ -55,7 +55,7 @@ static void lanczos_free(lanczos *L)
     ritz_dense_free(&L->V);
 }
 
-/* y := A x, which may be one and the same. */
+/* y := A x; x and y may be the same array. */
 static ritz_status multiply(const ritz_sparse *A, double *x, double *y)
 {
     ritz_dense X = {A->ncol, 1, NULL};
@@ -67,7 +67,7 @@ static ritz_status multiply(const ritz_sparse *A, double *x, double *y)
     return RITZ_OK;
 }
 
-/* y := F^-1 x, which may be one and the same. */
+/* y := F^-1 x; x and y may be the same array. */
 static ritz_status solve(const lanczos *L, const double *x, double *y)
 {
     ritz_dense Y = {L->n, 1, y};
@@ -77,7 +77,7 @@ static ritz_status solve(const lanczos *L, const double *x, double *y)
     return ritz_factor_solve(L->F, &Y);
 }
 
-/* x := A x / unit, y := F^-1 x. They may be one and the same. */
+/* x := A x / unit, y := F^-1 x; x and y may be the same array. */
 static ritz_status apply(const lanczos *L, double *x, double *y)
 {
     RITZ_CHECK(multiply(L->A, x, x));
@@ -117,7 +117,7 @@ static ritz_status start(lanczos *L)
     return apply(L, L->resid, L->resid);
 }
 
-/* Do what ARPACK asks for until it asks no more. */
+/* Serve the requests of ARPACK until it has finished. */
 static ritz_status iterate(lanczos *L)
 {
     const bool inverse = L->iparam[6] == INVERSE;
@@ -165,7 +165,7 @@ static ritz_status extract(lanczos *L)
 
 /* ---- modes -------------------------------------------------------------- */
 
-/* The k-th largest |nu| ARPACK came to, as an eigenvalue. */
+/* The k-th largest |nu| that ARPACK has reached, as an eigenvalue. */
 static double reach_of(const lanczos *L)
 {
     const double *nu = L->workl + L->ipntr[RITZ_VALUES] - 1;
@@ -222,7 +222,7 @@ static ritz_status norm_of(const lanczos *L, double *x, double *out)
     return RITZ_OK;
 }
 
-/* The unit of theta, by which its largest value becomes about one: ARPACK takes
+/* A unit of theta in which its largest value is about one, since ARPACK takes
    values below eps^(2/3) for zero. 0 if A is zero. */
 static ritz_status choose_unit(lanczos *L)
 {
@@ -238,7 +238,7 @@ static ritz_status choose_unit(lanczos *L)
     return RITZ_OK;
 }
 
-/* eps |x|'|B||x|: what rounding of the entries of B may change of x'B x. */
+/* eps |x|'|B||x|: the largest change of x'B x by rounding of B's entries. */
 static double rounding_of(const ritz_sparse *B, const double *x)
 {
     double sum = 0.0;
@@ -263,7 +263,7 @@ static ritz_status find_error(lanczos *L, int64_t j, double *out)
     return RITZ_OK;
 }
 
-/* Those of the values in L->d that are accurate; the others are NaN. */
+/* Keep the accurate values of L->d and set the others to NaN. */
 static ritz_status keep_accurate(lanczos *L)
 {
     double least = HUGE_VAL;

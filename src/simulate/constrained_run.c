@@ -110,8 +110,8 @@ static ritz_status take_start(const ritz_linked *j, const double *from,
     return RITZ_OK;
 }
 
-/* The nearest values in M that satisfy the constraints; returns by which part
-   of their size they were moved. */
+/* Replace values by the nearest ones, in the norm of M, that satisfy the
+   constraints; return the relative change. */
 static double project_start(const ritz_linked *j, double *x)
 {
     const double length = length_of(j->motion.n, x);

@@ -13,13 +13,14 @@
 ritz_status ritz_swept_bend(ritz_swept_model *model);
 
 /**
- * The same of a model with `turn`: F at the last knot becomes that of the first
- * knot one turn further, and the spline is continuous over all turns.
+ * As above for a model with `turn`: F at the last knot is set to its value at
+ * the first knot one turn further, so that the spline is continuous over all
+ * turns.
  */
 ritz_status ritz_swept_bend_around(ritz_swept_model *model);
 
-/** The x of the knots that a setting x has, and how many turns it is away;
- * without `turn` x itself, and 0. */
+/** Reduce a setting x to the turn of the knots, and count the turns between
+ * them; without `turn` the result is x itself and 0 turns. */
 double ritz_swept_within(const ritz_swept_model *model, double x,
                          double *turns);
 
@@ -32,8 +33,8 @@ double ritz_swept_within(const ritz_swept_model *model, double x,
 void ritz_swept_turn(const ritz_swept_model *model, bool back, double *q,
                      double *work);
 
-/** F at x, rows x r; x may be beyond the ends by rounding. With `turn`, F is
- * that of the turn of the knots. */
+/** F at x, rows x r; rounding may place x beyond the ends. With `turn`, F is
+ * evaluated in the turn of the knots. */
 ritz_status ritz_swept_values(const ritz_swept_model *model, double x,
                               ritz_dense *out);
 

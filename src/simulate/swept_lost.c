@@ -1,7 +1,7 @@
 /*
- * What a basis does not span at the start. Let x be a vector in all modes there,
- * whose mass matrix is I and whose stiffness is Lambda. The columns of S, the
- * basis in these modes, are orthonormal, and
+ * The part of the initial state that a basis does not span. Let x be a vector
+ * in all modes at the start, with the mass matrix I and the stiffness Lambda.
+ * The columns of S, the basis in these modes, are orthonormal, and
  *
  *     d = x - S S'x,   share of the mass norm  d'd / x'x,
  *     share of the strain energy  d'Lambda d / x'Lambda x
@@ -43,13 +43,13 @@ static double strain(const ritz_swept_model *m, const double *x)
     return sum;
 }
 
-/* A ratio of squares; 0 of 0. */
+/* A ratio of squares; 0 if both are 0. */
 static double share(double part, double all)
 {
     return all > 0.0 ? fmin(part / all, 1.0) : 0.0;
 }
 
-/* The largest share that is left of a displacement or a velocity. */
+/* The largest share of a displacement or a velocity that the basis spans. */
 static double left_of(const double square[2], const ritz_swept_lost *lost)
 {
     return fmax(square[0] > 0.0 ? 1.0 - lost->displacement : 0.0,
@@ -72,7 +72,7 @@ ritz_status ritz_swept_lost_state(const ritz_swept_model *m, const double *x0,
 
         find_rest(m, x0, d);
         lost.displacement = share(ritz_motion_dot(e, d, d), square[0]);
-        /* a rigid motion has the strain of its rounding */
+        /* the strain of a rigid motion is rounding */
         if (all > RITZ_NEGLIGIBLE * least * square[0])
             lost.strain = share(strain(m, d), all);
     }

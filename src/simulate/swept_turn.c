@@ -5,9 +5,9 @@
  *     T(x + 2 pi) = T(x) O,   S T likewise,   D_r(x + 2 pi) = O'D_r(x) O
  *
  * with an orthogonal O. This continues the knots of one turn on both sides.
- * Second derivatives of a spline feel its ends by a factor of 2 - sqrt(3) less
- * for each knot, so that 32 more knots on either side leave nothing of them
- * (5e-19).
+ * The effect of the ends on second derivatives of a spline decreases by a
+ * factor of 2 - sqrt(3) a knot, so that 32 more knots on either side reduce it
+ * to 5e-19.
  */
 #include "simulate/swept.h"
 
@@ -53,7 +53,7 @@ static ritz_status continue_values(const ritz_swept_model *m, int64_t i,
     return RITZ_OK;
 }
 
-/* The knots with beside more on either side, and their spline. */
+/* The knots, with further ones on either side, and their spline. */
 static ritz_status make_wider(const ritz_swept_model *m, ritz_swept_model *out)
 {
     out->order = m->order;

@@ -77,9 +77,9 @@ static double highest_rate(const ritz_spin_rate *rate)
     return most;
 }
 
-/* Warn of flexible bodies that name no load for the pull of bodies outboard, if
-   it changes a frequency by more than is negligible; tell whether any has such
-   a pull. */
+/* Warn of flexible bodies that name no load for the pull of outboard bodies, if
+   that pull changes a frequency by more than `negligible`. *any is set if a
+   body has such a pull. */
 static ritz_status warn_of_pulls(cli_run *run, const ritz_stage *stage,
                                  const ritz_configuration *at,
                                  const double *unpulled, bool *any)
