@@ -48,8 +48,8 @@ static bool has_bodies(const recovery *r)
            r->source.simulation.num_blocks > 0;
 }
 
-/* What turns the body: its forces are in the equations of motion, and not among
-   those of mode acceleration. NULL: nothing does. */
+/* Name what turns the body; mode acceleration leaves out the forces of that
+   rotation, which the equations of motion contain. NULL: nothing turns it. */
 static const char *find_turning(const recovery *r)
 {
     if (r->turned)

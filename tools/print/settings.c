@@ -1,4 +1,4 @@
-/* The units of what joints of a scene are set to. */
+/* Units of the settings of joints. */
 #include "print/print.h"
 
 #include <stdio.h>

@@ -123,7 +123,7 @@ static ritz_status check_scene(const simulation_task *task)
     return RITZ_OK;
 }
 
-/* Refuse an integrator that would not be used, and a --rho that it has not. */
+/* Refuse an integrator that would not be used, and --rho if it has none. */
 static ritz_status check_integrator(const simulation_task *task,
                                     const ritz_constrained_request *how)
 {

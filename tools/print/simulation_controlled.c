@@ -37,8 +37,8 @@ static void say_split(cli_run *run, bool sampled,
                 stability->from);
 }
 
-/* The verdict where there are no poles of a continuous loop. A sampled loop is
-   stable if its map is; a delayed one is known to be unstable only. */
+/* The verdict if poles of a continuous loop are not known. A sampled loop is
+   stable if its map is; a delayed loop can only be found unstable. */
 static void say_map(cli_run *run, const ritz_controlled *controlled,
                     const ritz_loop_stability *stability)
 {
@@ -141,7 +141,7 @@ ritz_status simulation_prepare_loop(simulation_task *task)
     return loop_join(task->run, given, &task->io, &inner, &task->loop);
 }
 
-/* The controller as options say. */
+/* The controller that the options describe. */
 static ritz_controlled take_controlled(const simulation_task *d)
 {
     const simulation_options *given = d->given;

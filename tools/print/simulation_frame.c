@@ -1,4 +1,4 @@
-/* What the coordinates of a run are: those of which bodies, in which frame. */
+/* Bodies and frame of the coordinates that a run has stored. */
 #include "print/simulation.h"
 
 ritz_status simulation_name_bodies(const simulation_task *task,

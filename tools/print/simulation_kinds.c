@@ -39,7 +39,7 @@ ritz_status simulation_find_kind(const simulation_options *given,
     return RITZ_OK;
 }
 
-/* What messages call the uses, in the order of their bits. */
+/* Names of the uses in messages, in the order of their bits. */
 static const char *const use_names[] = {
     "a run of one linear model",
     "--constraints",
@@ -51,7 +51,7 @@ static const char *const use_names[] = {
 };
 enum { USES = sizeof use_names / sizeof *use_names };
 
-/* Options that only some runs use. All others are for every run. */
+/* Options that only some runs use. Every run uses the others. */
 static const struct {
     const char *option;
     unsigned uses;
@@ -127,7 +127,7 @@ bool simulation_misuses(const cli_run *run, unsigned use, size_t size,
     return false;
 }
 
-/* Options that a value of another option makes useless. */
+/* Refuse options that have no effect with the value of another option. */
 static void check_values(const cli_run *run, const simulation_options *given,
                          unsigned use)
 {
