@@ -188,7 +188,7 @@ ritz_status ritz_stage_missing_stiffening(const ritz_stage *stage,
  * it names none, the stiffness due to that pull is estimated; `negligible`
  * includes the estimate, but the model does not.
  *
- * @param[out] unpulled  a rate for each body, up to which leaving out that
+ * @param[out] without_pull  a rate for each body, up to which leaving out that
  *                       estimate changes no frequency by more than @p error;
  *                       HUGE_VAL: there is no such pull, or `tip` has it;
  *                       NULL: not wanted
@@ -196,7 +196,7 @@ ritz_status ritz_stage_missing_stiffening(const ritz_stage *stage,
  */
 ritz_status ritz_stage_spin_limits(const ritz_stage *stage,
                                    const double *setting, double error,
-                                   ritz_spin_limits *out, double *unpulled);
+                                   ritz_spin_limits *out, double *without_pull);
 
 /** Mass of all bodies that joints hold outboard of body @p k of a scene that
  * spins. */

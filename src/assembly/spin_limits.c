@@ -33,7 +33,7 @@ static ritz_status band_modes(const ritz_scene *scene,
 static ritz_status add_missing_pulls(const ritz_stage *stage,
                                      const ritz_configuration *c,
                                      const ritz_dense *modes, double error,
-                                     ritz_spin_terms *sum, double *unpulled)
+                                     ritz_spin_terms *sum, double *without_pull)
 {
     for (int64_t k = 0; k < stage->count; k++) {
         RITZ_OWN(ritz_dense) KG = {0};
@@ -50,15 +50,15 @@ static ritz_status add_missing_pulls(const ritz_stage *stage,
                 RITZ_CHECK(ritz_dense_new(c->K.nrow, c->K.nrow, &sum->KG));
             ritz_dense_add(1.0, &pull.KG, &sum->KG);
         }
-        if (unpulled)
-            unpulled[k] = limits.negligible;
+        if (without_pull)
+            without_pull[k] = limits.negligible;
     }
     return RITZ_OK;
 }
 
 ritz_status ritz_stage_spin_limits(const ritz_stage *stage,
                                    const double *setting, double error,
-                                   ritz_spin_limits *out, double *unpulled)
+                                   ritz_spin_limits *out, double *without_pull)
 {
     ritz_scene rest = *stage->scene, all = *stage->scene; /* borrowed */
     ritz_stage at_rest = *stage, consistent = *stage;
@@ -75,7 +75,8 @@ ritz_status ritz_stage_spin_limits(const ritz_stage *stage,
     RITZ_CHECK(ritz_stage_spin(stage, &c, &kept));
     RITZ_CHECK(ritz_stage_spin(&consistent, &c, &terms));
     RITZ_CHECK(band_modes(&rest, &c, &modes));
-    RITZ_CHECK(add_missing_pulls(stage, &c, &modes, error, &terms, unpulled));
+    RITZ_CHECK(
+        add_missing_pulls(stage, &c, &modes, error, &terms, without_pull));
     limits.stable = nan("");
     if (c.num_rigid == 0)
         RITZ_CHECK(ritz_spin_limits_of(&kept, &c.K, NULL, error, &limits));

@@ -67,7 +67,7 @@ typedef struct switching {
     ritz_set_model set;
     ritz_choosing choosing;
     ritz_residue residue;
-    double *told, *q_0, *w_0, *p, *v; /* parts of memory */
+    double *statistic, *q_0, *w_0, *p, *v; /* parts of memory */
     double *memory;
     double *u0, *u1;      /* inputs and 1 */
     double *ahead;        /* inputs at the end of an interval */
@@ -109,8 +109,8 @@ static void project_state(ritz_march *march, switching *s)
     const size_t size = (size_t)n * sizeof(double);
     double before[2] = {0.0}, after[2] = {0.0}, change = 0.0;
 
-    s->told[JUMP_X] = sqrt(ritz_motion_dot(n, s->q_0, s->q_0));
-    s->told[JUMP_V] = sqrt(ritz_motion_dot(n, s->w_0, s->w_0));
+    s->statistic[JUMP_X] = sqrt(ritz_motion_dot(n, s->q_0, s->q_0));
+    s->statistic[JUMP_V] = sqrt(ritz_motion_dot(n, s->w_0, s->w_0));
     ritz_march_energy(march, &before[0], &before[1]);
     for (int64_t k = 0; k < n; k++) {
         march->x[k] -= s->q_0[k];
@@ -120,8 +120,8 @@ static void project_state(ritz_march *march, switching *s)
     memset(s->w_0, 0, size);
     ritz_march_energy(march, &after[0], &after[1]);
     change = after[0] + after[1] - before[0] - before[1];
-    s->told[LOST] += fmax(-change, 0.0);
-    s->told[GAINED] += fmax(change, 0.0);
+    s->statistic[LOST] += fmax(-change, 0.0);
+    s->statistic[GAINED] += fmax(change, 0.0);
     march->dissipated -= change;
 }
 
@@ -132,12 +132,12 @@ static void note_left_out(const ritz_march *march, switching *s)
     const double all = ritz_motion_dot(n, march->v, march->v);
     const double share = ritz_motion_dot(n, s->w_0, s->w_0) / all; /* or nan */
 
-    s->told[MOVING] = fmax(s->told[MOVING], all);
-    if (all <= RITZ_SWITCH_MOVES * s->told[MOVING] ||
-        share <= s->told[LEFT_OUT])
+    s->statistic[MOVING] = fmax(s->statistic[MOVING], all);
+    if (all <= RITZ_SWITCH_MOVES * s->statistic[MOVING] ||
+        share <= s->statistic[LEFT_OUT])
         return;
-    s->told[LEFT_OUT] = share;
-    s->told[LEFT_OUT_AT] = (double)march->steps;
+    s->statistic[LEFT_OUT] = share;
+    s->statistic[LEFT_OUT_AT] = (double)march->steps;
 }
 
 static int64_t count_present(const switching *s)
@@ -163,9 +163,9 @@ static ritz_status change_set(ritz_march *march, switching *s)
     note_left_out(march, s);
     if (s->switched->jump == RITZ_SWITCH_PROJECT)
         project_state(march, s);
-    s->told[SWITCHES] += 1.0;
-    s->told[LAST_SWITCH] = (double)march->steps;
-    s->told[VECTORS] = (double)count_present(s);
+    s->statistic[SWITCHES] += 1.0;
+    s->statistic[LAST_SWITCH] = (double)march->steps;
+    s->statistic[VECTORS] = (double)count_present(s);
     return finish_set(march, s);
 }
 
@@ -194,8 +194,8 @@ static bool find_residue(const ritz_march *march, switching *s,
     for (int k = 0; k < 2; k++) {
         ritz_residue_find(s->library, march->x, march->v, u[k], ahead,
                           &s->residue);
-        s->told[LARGEST] = fmax(s->told[LARGEST], s->residue.largest);
-        if (sqrt(s->residue.square) > RITZ_SUM_ROUNDING * s->told[LARGEST])
+        s->statistic[LARGEST] = fmax(s->statistic[LARGEST], s->residue.largest);
+        if (sqrt(s->residue.square) > RITZ_SUM_ROUNDING * s->statistic[LARGEST])
             return true;
     }
     return false;
@@ -204,20 +204,21 @@ static bool find_residue(const ritz_march *march, switching *s,
 static ritz_status switch_set(ritz_march *march, switching *s, const double *u0)
 {
     ritz_choosing *c = &s->choosing;
-    const double since = (double)march->steps - s->told[LAST_SWITCH];
+    const double since = (double)march->steps - s->statistic[LAST_SWITCH];
     const bool kept = s->set.made && since < (double)s->steps_kept;
     const size_t size = (size_t)s->library->num_vectors * sizeof(double);
 
     if (!find_residue(march, s, u0))
         return RITZ_OK;
     if (kept) {
-        s->told[INDICATOR] = ritz_present_indicator(s->library, &s->residue, c);
+        s->statistic[INDICATOR] =
+            ritz_present_indicator(s->library, &s->residue, c);
         return RITZ_OK;
     }
     ritz_choose_vectors(s->library, s->switched, &s->residue, c);
-    s->told[INDICATOR] = c->indicator;
-    s->told[LEADING] = (double)(c->leading + 1);
-    s->told[FALLBACKS] += c->fallback ? 1.0 : 0.0;
+    s->statistic[INDICATOR] = c->indicator;
+    s->statistic[LEADING] = (double)(c->leading + 1);
+    s->statistic[FALLBACKS] += c->fallback ? 1.0 : 0.0;
     if (s->set.made && memcmp(c->next, c->present, size) == 0)
         return RITZ_OK;
     return change_set(march, s);
@@ -246,7 +247,7 @@ static ritz_status advance_set(ritz_march *march, switching *s)
     memcpy(s->v, inner->v, (size_t)r * sizeof *s->v);
     ritz_set_model_expand(set, s->q_0, s->p, n, march->x);
     ritz_set_model_expand(set, s->w_0, s->v, n, march->v);
-    s->told[VECTOR_STEPS] += (double)r;
+    s->statistic[VECTOR_STEPS] += (double)r;
     return RITZ_OK;
 }
 
@@ -256,7 +257,8 @@ static ritz_status advance_switched(ritz_march *march, const double *u0,
     switching *s = march->own;
     const int64_t m = s->library->B.ncol;
 
-    if (!s->set.made && s->told[SWITCHES] > 0.0) { /* the run was continued */
+    if (!s->set.made &&
+        s->statistic[SWITCHES] > 0.0) { /* the run was continued */
         RITZ_CHECK(
             ritz_set_model_new(s->library, s->choosing.present, &s->set));
         RITZ_CHECK(finish_set(march, s));
@@ -286,7 +288,7 @@ static void diagnose(const ritz_march *march, double *out)
 {
     const switching *s = march->own;
 
-    memcpy(out, s->told, NUM_DIAGNOSTICS * sizeof *out);
+    memcpy(out, s->statistic, NUM_DIAGNOSTICS * sizeof *out);
 }
 
 /* Accelerations of the present set; q_0 and w_0 are constant. */
@@ -349,7 +351,7 @@ static ritz_status make_memory(const ritz_library *library, switching *s,
     const int64_t parts[] = {NUM_NOTED,  library->num_vectors, library->n,
                              library->n, library->span,        library->span};
     double **const places[] = {
-        &s->told, &s->choosing.present, &s->q_0, &s->w_0, &s->p, &s->v};
+        &s->statistic, &s->choosing.present, &s->q_0, &s->w_0, &s->p, &s->v};
     const size_t count = sizeof parts / sizeof *parts;
     int64_t at = 0;
 
@@ -455,7 +457,7 @@ static ritz_status start_march(const ritz_library *library,
     RITZ_CHECK(make_memory(library, s, march));
     RITZ_CHECK(make_room(library, s));
     RITZ_CHECK(ritz_dense_mul(&io->Ca, &library->Phi, &s->Ca));
-    s->told[LARGEST] = largest_force(library, request);
+    s->statistic[LARGEST] = largest_force(library, request);
     march->advance = advance_switched;
     march->outputs = find_outputs;
     march->energy = find_energy;
@@ -501,12 +503,12 @@ static void fill_report(const ritz_march *march, const ritz_library *library,
 {
     const switching *s = march->own;
 
-    report->num_switches = (int64_t)s->told[SWITCHES];
-    report->num_fallbacks = (int64_t)s->told[FALLBACKS];
-    report->vector_steps = s->told[VECTOR_STEPS];
+    report->num_switches = (int64_t)s->statistic[SWITCHES];
+    report->num_fallbacks = (int64_t)s->statistic[FALLBACKS];
+    report->vector_steps = s->statistic[VECTOR_STEPS];
     report->outside = library->outside;
-    report->left_out = s->told[LEFT_OUT];
-    report->left_out_at = s->told[LEFT_OUT_AT] * march->step;
+    report->left_out = s->statistic[LEFT_OUT];
+    report->left_out_at = s->statistic[LEFT_OUT_AT] * march->step;
 }
 
 /* It has the name of the run only: `modal` propagates the sets. */

@@ -65,7 +65,7 @@ long run '--checkpoint run.ck'
 
 mkdir gone
 long run '--checkpoint gone/run.ck'
-expect 1 "is in 'run.h5.interrupted'; there is no checkpoint of it: gone" \
+expect 1 "is in 'run.h5.interrupted'; its checkpoint was not written: gone" \
     at_step away:gone,INT simulation $run
 cp log said
 mkdir gone out
@@ -91,16 +91,16 @@ same '  and it does' out/run.h5
 clock=$bin/../tests/libritz_clock.so
 if [ -f "$clock" ]; then
     rm run.h5
-    expect 0 'warning: the run goes on without a new checkpoint' \
+    expect 0 'warning: a checkpoint was not written; the run goes on' \
         at_step away:gone simulation env "LD_PRELOAD=$clock" $run
     cp log said
-    works '  once' test "$(grep -c 'without a new checkpoint' said)" = 1
+    works '  once' test "$(grep -c 'a checkpoint was not written' said)" = 1
     same '  to its end' run.h5
 
     # that the next ones are written is seen where the output cannot be
     mkdir gone
     expect 1 "the same command continues the run from 'gone/run.ck'" at_step \
-        away:gone,away:out simulation + back:gone 'without a new' \
+        away:gone,away:out simulation + back:gone 'was not written' \
         env "LD_PRELOAD=$clock" "$@"
     mkdir out
     expect 0 'time response' "$@"

@@ -59,7 +59,7 @@ expect 0 '' ritz-chart switched half.h5 switched.h5 few.h5 -o x.svg
 rm x.svg
 ritz-simulate -q $turn turn.h5 --up-to-hz 1e6 --seconds 0.01 --every 1 \
     -o short.h5
-expect 1 "'short.h5' ends before the second time of" ritz-chart switched \
+expect 1 "'short.h5' and the first run have fewer than two times" ritz-chart switched \
     full.h5 short.h5 -o x.svg
 ritz-simulate -q turn.h5 --seconds 8 --step 0.003 --up-to-hz 1e6 \
     --input along=step -o other.h5

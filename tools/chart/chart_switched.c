@@ -75,8 +75,7 @@ static ritz_status find_times(const chart_file *file,
     RITZ_REFUSE_IF(r->count < k && r->count < i, RITZ_ERR_ARGUMENT,
                    "'%s' has other times than the first run", file->path);
     RITZ_REFUSE_IF(r->count < 2, RITZ_ERR_ARGUMENT,
-                   "'%s' ends before the second time of the first run, or the "
-                   "first run before its",
+                   "'%s' and the first run have fewer than two times in common",
                    file->path);
     return RITZ_OK;
 }

@@ -136,10 +136,11 @@ static ritz_status tell_end(const simulation_task *task, const char *fault,
 
     RITZ_REFUSE_IF(!checkpoint, RITZ_ERR_CONVERGENCE,
                    "interrupted: %s, is in '%s'", what, kept);
-    RITZ_REFUSE_IF(*fault, RITZ_ERR_CONVERGENCE,
-                   "interrupted: %s, is in '%s'; there is no checkpoint of it: "
-                   "%s; the same command continues it if you copy '%s' to '%s'",
-                   what, kept, fault, kept, checkpoint);
+    RITZ_REFUSE_IF(
+        *fault, RITZ_ERR_CONVERGENCE,
+        "interrupted: %s, is in '%s'; its checkpoint was not written: "
+        "%s; the same command continues it if you copy '%s' to '%s'",
+        what, kept, fault, kept, checkpoint);
     return ritz_fail(RITZ_ERR_CONVERGENCE,
                      "interrupted: %s, is in '%s'; the same command continues "
                      "it from '%s'",
@@ -181,8 +182,8 @@ static void try_checkpoint(simulation_task *task,
     snprintf(fault, RITZ_MESSAGE_SIZE, "%s", ritz_error_message());
     if (first && !cli_interrupted())
         cli_warn(task->run,
-                 "the run goes on without a new checkpoint, and the next one "
-                 "is tried in due time: %s",
+                 "a checkpoint was not written; the run goes on, and tries "
+                 "again after half a minute: %s",
                  fault);
 }
 

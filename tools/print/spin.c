@@ -82,15 +82,15 @@ static double highest_rate(const ritz_spin_rate *rate)
    body has such a pull. */
 static ritz_status warn_of_pulls(cli_run *run, const ritz_stage *stage,
                                  const ritz_configuration *at,
-                                 const double *unpulled, bool *any)
+                                 const double *without_pull, bool *any)
 {
     const ritz_scene_spin *spin = &stage->scene->spin;
 
     for (int64_t k = 0; k < stage->count; k++) {
         double mass = 0.0;
 
-        *any = *any || isfinite(unpulled[k]);
-        if (!(highest_rate(&spin->rate) > unpulled[k]) ||
+        *any = *any || isfinite(without_pull[k]);
+        if (!(highest_rate(&spin->rate) > without_pull[k]) ||
             spin->model != RITZ_SPIN_CONSISTENT)
             continue;
         RITZ_CHECK(ritz_stage_spin_outboard(stage, at, k, &mass));
@@ -99,7 +99,7 @@ static ritz_status warn_of_pulls(cli_run *run, const ritz_stage *stage,
                  "the mass of %.6g outboard does not stiffen it, although it "
                  "changes a frequency by more than %g from about %.3g rad/s on",
                  stage->scene->component[k].name, mass, spin->negligible,
-                 unpulled[k]);
+                 without_pull[k]);
     }
     return RITZ_OK;
 }
@@ -122,14 +122,14 @@ static ritz_status say_limits(cli_run *run, const ritz_stage *stage,
 {
     const ritz_scene_spin *spin = &stage->scene->spin;
     const double most = highest_rate(&spin->rate);
-    RITZ_OWN_ARRAY double *unpulled = NULL;
+    RITZ_OWN_ARRAY double *without_pull = NULL;
     ritz_spin_limits limits = {0};
     bool estimated = false;
 
-    RITZ_CHECK_NEW(unpulled, stage->count);
+    RITZ_CHECK_NEW(without_pull, stage->count);
     RITZ_CHECK(ritz_stage_spin_limits(stage, at->setting, spin->negligible,
-                                      &limits, unpulled));
-    RITZ_CHECK(warn_of_pulls(run, stage, at, unpulled, &estimated));
+                                      &limits, without_pull));
+    RITZ_CHECK(warn_of_pulls(run, stage, at, without_pull, &estimated));
     say_negligible(run, limits.negligible, spin->negligible, estimated,
                    missing);
     if (isfinite(limits.stable))

@@ -42,7 +42,7 @@ def run(it):
     it.row(f"{wrong[-1][0]:.3g} and {wrong[-1][1]:.3g} Hz at 90 degrees",
            f"{right[-1][0]:.3g} and {right[-1][1]:.3g} Hz",
            f"{flexible[0]:.3g} and {flexible[1]:.3g} Hz, to 1e-7; the worst "
-           "error between listed angles is told")
+           "error between listed angles is printed")
     it.picture("""set xlabel "angle of the hinge, degrees"
 set ylabel "Hz"
 set xrange [0:90]

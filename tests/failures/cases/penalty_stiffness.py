@@ -1,6 +1,6 @@
 """A penalty too stiff for the integrator
 
-A constraint is a very stiff spring, the stiffer the more exact. An explicit integrator leaves all bounds: its step has to resolve the spring. An implicit one goes on, since it is stable for any stiffness, and the force in the joint alternates between nothing and twice the right one at every step, for ever. Positions look right, until the spring is so stiff that beside it no digit is left of the springs of the bodies: then the motion is wrong too, although the constraint is satisfied to all digits.
+A constraint is a very stiff spring, the stiffer the more exact. An explicit integrator is unstable, because its step has to resolve the spring. An implicit one goes on, since it is stable for any stiffness, and the force in the joint alternates between nothing and twice the right one at every step, for ever. Positions look right, unless the spring is so stiff that the sum of both stiffnesses has no digits left for the bodies' own: then the motion is wrong too, although the constraint is satisfied to all digits.
 
 Ritz chooses the stiffness from the step, refuses what an explicit integrator cannot hold, with the limit, and warns where an implicit one lets forces ring. It integrates the violation of the constraints as coordinates of their own, so that no stiffness takes digits from the motion. Its method of index 2 has no spring.
 """
@@ -70,7 +70,7 @@ def run(it):
     it.right("the tip, index 2,", found["tip"][-1], right, 1e-3)
     it.right("largest force, index 2,", np.max(held), np.max(true), 1e-3)
     it.row(f"explicit: no motion; implicit: a force of {np.max(force):.2g} at "
-           "most; a spring of 1e18: a tip that rounding moves",
+           "most; a spring of 1e18: the tip moves by rounding",
            f"{np.max(true):.2g}; {right:.2g}",
            f"`raises the highest frequency`, with the limit; `stiffer ones "
            f"ring`; by index 2 {np.max(held):.2g}; the tip at {kept[-1]:.2g} "

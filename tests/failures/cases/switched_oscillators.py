@@ -89,6 +89,6 @@ def run(it):
     it.holds(np.all(energy[1:] <= energy[:-1] * (1 + 1e-12)),
              "Ritz: the energy never grows")
     it.row("amplitude times 4 every half turn, 3.32 with damping",
-           "none grows", f"a chain of its runs grows {found[0]:.5f} and "
-           f"{found[1]:.5f} times too; sets of one structure have one Lyapunov "
+           "none grows", "runs of Ritz, each continued by the next, also grow "
+           f"{found[0]:.5f} and {found[1]:.5f} times; sets of one structure have one Lyapunov "
            "function: `a common Lyapunov function of all sets`, checked once")

@@ -373,14 +373,15 @@ static void an_inconsistent_model_leaves_rotation_out(void **)
 
 /* ---- pull that no load has ----------------------------------------------- */
 
-static void limit_tipped(const char *tip, double *rate, double unpulled[2])
+static void limit_tipped(const char *tip, double *rate, double without_pull[2])
 {
     RITZ_OWN(ritz_scene) scene = {0};
     RITZ_OWN(ritz_stage) stage = {0};
     ritz_spin_limits limits = {0};
 
     assert_ok(tipped_stage(tip, 1.0, &scene, &stage));
-    assert_ok(ritz_stage_spin_limits(&stage, NULL, 1e-3, &limits, unpulled));
+    assert_ok(
+        ritz_stage_spin_limits(&stage, NULL, 1e-3, &limits, without_pull));
     *rate = limits.negligible;
 }
 
@@ -470,13 +471,13 @@ static ritz_status spin_tipped(void *of)
     const ritz_stage *stage = of;
     RITZ_OWN(ritz_configuration) c = {0};
     ritz_spin_limits limits = {0};
-    double unpulled[2], mass = 0.0;
+    double without_pull[2], mass = 0.0;
     int missing = 0;
 
     RITZ_CHECK(ritz_stage_assemble(stage, NULL, &c));
     RITZ_CHECK(ritz_stage_missing_stiffening(stage, &c, 0, &missing));
     RITZ_CHECK(ritz_stage_spin_outboard(stage, &c, 0, &mass));
-    return ritz_stage_spin_limits(stage, NULL, 0.01, &limits, unpulled);
+    return ritz_stage_spin_limits(stage, NULL, 0.01, &limits, without_pull);
 }
 
 static void every_allocation_may_fail(void **)
