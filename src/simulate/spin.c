@@ -31,19 +31,21 @@
 #include <math.h>
 #include <string.h>
 
+/* All in the modes of the model at rest, in which M is the unit matrix and K is
+   diagonal. A step then multiplies by H and G once, and solves once. */
 typedef struct spun {
-    const ritz_spin_terms *terms;
+    ritz_spin_terms terms;
     const ritz_spin_rate *rate;
-    const ritz_io *io;
     ritz_dense H;          /* {0}: none */
     ritz_dense D;          /* its symmetric part, which dissipates; {0}: none */
+    ritz_dense Ca;         /* outputs x n, of accelerations; {0}: none */
     ritz_general_factor F; /* of the matrix of a step with `mean` */
     double mean[3];        /* <W>, <W^2> and <W'> of that matrix */
     bool factored;
-    ritz_general_factor mass; /* of M; only for outputs of acceleration */
-    ritz_dense f;             /* n x 1, right side and then <v> */
-    double *g;                /* n, work space */
-    double *memory;           /* work of the drive */
+    ritz_dense f;    /* n x 1, right side and then <v> */
+    double *Hx, *Gx; /* n, of the present x if `present` */
+    bool present;
+    double *memory; /* work of the drive */
 } spun;
 
 enum { RATE, ACCELERATION, ANGLE, SPIN_WORK, STIFFENING, NUM_DIAGNOSTICS };
@@ -60,12 +62,13 @@ static void release_spun(void *own)
 {
     spun *s = own;
 
+    ritz_spin_terms_free(&s->terms);
     ritz_dense_free(&s->H);
     ritz_dense_free(&s->D);
+    ritz_dense_free(&s->Ca);
     ritz_general_factor_free(&s->F);
-    ritz_general_factor_free(&s->mass);
     ritz_dense_free(&s->f);
-    RITZ_FREE(s->g, s->memory, s);
+    RITZ_FREE(s->Hx, s->Gx, s->memory, s);
 }
 
 static double time_of(const ritz_march *march)
@@ -73,25 +76,31 @@ static double time_of(const ritz_march *march)
     return (double)march->steps * march->step;
 }
 
-/* g += sign (K + <W^2> H + <W'> G / 2) x, where G or H {0} is zero. */
-static void add_stiffness(const ritz_march *march, const double mean[3],
-                          double sign, const double *x, double *g)
+/* H x and G x, which are 0 where H or G is {0}. */
+static void multiply_present(const ritz_march *march)
 {
-    const spun *s = march->own;
+    const size_t bytes = (size_t)march->motion->n * sizeof(double);
+    spun *s = march->own;
 
-    ritz_motion_gemv(&march->motion->K, sign, x, g);
-    ritz_motion_gemv(&s->H, sign * mean[1], x, g);
-    ritz_motion_gemv(&s->terms->G, 0.5 * sign * mean[2], x, g);
+    if (s->present)
+        return;
+    memset(s->Hx, 0, bytes);
+    memset(s->Gx, 0, bytes);
+    ritz_motion_gemv(&s->H, 1.0, march->x, s->Hx);
+    ritz_motion_gemv(&s->terms.G, 1.0, march->x, s->Gx);
+    s->present = true;
 }
 
-/* g += <W^2> centrifugal + <W'> euler */
-static void add_loads(const spun *s, const double mean[3], int64_t n, double *g)
+/* f += <W^2> (centrifugal - H x) + <W'> (euler - G x / 2) */
+static void add_spin_forces(const ritz_march *march, const double mean[3])
 {
-    const double *c = ritz_dense_col(&s->terms->load, 0);
-    const double *e = ritz_dense_col(&s->terms->load, 1);
+    const spun *s = march->own;
+    const double *c = ritz_dense_col(&s->terms.load, 0);
+    const double *e = ritz_dense_col(&s->terms.load, 1);
 
-    for (int64_t k = 0; k < n; k++)
-        g[k] += mean[1] * c[k] + mean[2] * e[k];
+    for (int64_t k = 0; k < march->motion->n; k++)
+        s->f.val[k] +=
+            mean[1] * (c[k] - s->Hx[k]) + mean[2] * (e[k] - 0.5 * s->Gx[k]);
 }
 
 static void add_scaled(double factor, const ritz_dense *A, ritz_dense *to)
@@ -113,10 +122,11 @@ static ritz_status factor_step(ritz_march *march, const double mean[3])
         return RITZ_OK;
     s->factored = false;
     ritz_general_factor_free(&s->F);
-    RITZ_CHECK(ritz_dense_copy(&m->M, &A));
+    RITZ_CHECK(ritz_dense_new(m->n, m->n, &A));
+    for (int64_t k = 0; k < m->n; k++)
+        ritz_dense_col(&A, k)[k] = 1.0 + half * half * m->lambda[k];
     add_scaled(half, &m->D, &A);
-    add_scaled(half * half, &m->K, &A);
-    add_scaled(half * (mean[0] + 0.5 * half * mean[2]), &s->terms->G, &A);
+    add_scaled(half * (mean[0] + 0.5 * half * mean[2]), &s->terms.G, &A);
     add_scaled(half * half * mean[1], &s->H, &A);
     RITZ_CHECK_IN("the matrix of a step", ritz_general_factor_new(&A, &s->F));
     memcpy(s->mean, mean, sizeof s->mean);
@@ -124,19 +134,27 @@ static ritz_status factor_step(ritz_march *march, const double mean[3])
     return RITZ_OK;
 }
 
+/* J + 2 centrifugal'x - x'H x, the moment of inertia of the deformed bodies. */
+static double moment_of_inertia(const ritz_march *march)
+{
+    const spun *s = march->own;
+    const int64_t n = march->motion->n;
+    const double *c = ritz_dense_col(&s->terms.load, 0);
+
+    return s->terms.inertia + 2.0 * ritz_motion_dot(n, c, march->x) -
+           ritz_motion_dot(n, s->Hx, march->x);
+}
+
 /* p at a rate W. */
 static double angular_momentum(const ritz_march *march, double W)
 {
     const spun *s = march->own;
     const int64_t n = march->motion->n;
-    const double *c = ritz_dense_col(&s->terms->load, 0);
-    const double *e = ritz_dense_col(&s->terms->load, 1);
+    const double *e = ritz_dense_col(&s->terms.load, 1);
 
-    memset(s->g, 0, (size_t)n * sizeof *s->g);
-    ritz_motion_gemv(&s->terms->G, 0.5, march->x, s->g);
-    return W * (s->terms->inertia + 2.0 * ritz_motion_dot(n, c, march->x) -
-                ritz_motion_form(&s->H, march->x)) -
-           ritz_motion_dot(n, e, march->v) + ritz_motion_dot(n, s->g, march->v);
+    multiply_present(march);
+    return W * moment_of_inertia(march) - ritz_motion_dot(n, e, march->v) +
+           0.5 * ritz_motion_dot(n, s->Gx, march->v);
 }
 
 /* Add the energy that D dissipates and the work of inputs; <v> is in f. */
@@ -164,11 +182,10 @@ static void load_step(const ritz_march *march, const double mean[3],
     memset(s->f.val, 0, (size_t)m->n * sizeof *s->f.val);
     ritz_motion_gemv(&m->B, 0.5, u0, s->f.val);
     ritz_motion_gemv(&m->B, 0.5, u1, s->f.val);
-    add_loads(s, mean, m->n, s->f.val);
-    add_stiffness(march, mean, -1.0, march->x, s->f.val);
+    add_spin_forces(march, mean);
     for (int64_t k = 0; k < m->n; k++)
-        s->f.val[k] *= half;
-    ritz_motion_gemv(&m->M, 1.0, march->v, s->f.val);
+        s->f.val[k] =
+            march->v[k] + half * (s->f.val[k] - m->lambda[k] * march->x[k]);
 }
 
 static ritz_status advance_spun(ritz_march *march, const double *u0,
@@ -191,6 +208,7 @@ static ritz_status advance_spun(ritz_march *march, const double *u0,
         march->x[k] += h * s->f.val[k];
         march->v[k] = 2.0 * s->f.val[k] - march->v[k];
     }
+    s->present = false;
     account_step(march, u0, u1);
     moment += angular_momentum(march, W1);
     s->memory[0] += mean[0] * moment;
@@ -203,16 +221,16 @@ static void find_energy(const ritz_march *march, double *kinetic,
                         double *potential)
 {
     const spun *s = march->own;
-    const int64_t n = march->motion->n;
     const double W = ritz_spin_rate_at(s->rate, time_of(march));
     const double p = angular_momentum(march, W);
-    const double *c = ritz_dense_col(&s->terms->load, 0);
+    double strain = 0.0, speed = 0.0;
 
-    *potential = 0.5 * ritz_motion_form(&march->motion->K, march->x);
-    *kinetic = 0.5 * ritz_motion_form(&march->motion->M, march->v) + W * p -
-               0.5 * W * W *
-                   (s->terms->inertia + 2.0 * ritz_motion_dot(n, c, march->x) -
-                    ritz_motion_form(&s->H, march->x));
+    for (int64_t k = 0; k < march->motion->n; k++) {
+        strain += march->motion->lambda[k] * march->x[k] * march->x[k];
+        speed += march->v[k] * march->v[k];
+    }
+    *potential = 0.5 * strain;
+    *kinetic = 0.5 * speed + W * p - 0.5 * W * W * moment_of_inertia(march);
 }
 
 /* y = C x + Cv x' + Ca x'', x'' from equilibrium in the turning frame. */
@@ -228,16 +246,14 @@ static void find_outputs(const ritz_march *march, const double *u, double *y)
     ritz_motion_gemv(&m->C, 1.0, march->x, y);
     ritz_motion_gemv(&m->Cv, 1.0, march->v, y);
     ritz_motion_gemv(&m->feed, 1.0, u, y);
-    if (!s->mass.LU.val)
+    if (!s->Ca.val)
         return;
     /* the motion gives x'' without spin: add what the spin changes */
+    multiply_present(march);
     memset(s->f.val, 0, (size_t)m->n * sizeof *s->f.val);
-    add_loads(s, mean, m->n, s->f.val);
-    ritz_motion_gemv(&s->H, -mean[1], march->x, s->f.val);
-    ritz_motion_gemv(&s->terms->G, -0.5 * mean[2], march->x, s->f.val);
-    ritz_motion_gemv(&s->terms->G, -W, march->v, s->f.val);
-    ritz_general_factor_solve(&s->mass, false, &s->f);
-    ritz_motion_gemv(&s->io->Ca, 1.0, s->f.val, y);
+    add_spin_forces(march, mean);
+    ritz_motion_gemv(&s->terms.G, -W, march->v, s->f.val);
+    ritz_motion_gemv(&s->Ca, 1.0, s->f.val, y);
 }
 
 static void diagnose(const ritz_march *march, double *out)
@@ -250,7 +266,29 @@ static void diagnose(const ritz_march *march, double *out)
     out[ANGLE] = ritz_spin_angle_at(s->rate, t);
     out[SPIN_WORK] = s->memory[0];
     out[STIFFENING] =
-        0.5 * out[RATE] * out[RATE] * ritz_motion_form(&s->terms->KG, march->x);
+        0.5 * out[RATE] * out[RATE] * ritz_motion_form(&s->terms.KG, march->x);
+}
+
+/* Terms and outputs in modes: q = Phi x, where motion->to is M Phi. */
+static ritz_status take_modes(const ritz_spin_terms *terms, const ritz_io *io,
+                              const ritz_motion *motion, spun *s)
+{
+    RITZ_OWN(ritz_dense) Phi = {0}; /* (M Phi)^-T */
+
+    RITZ_CHECK(ritz_dense_identity(motion->n, &Phi));
+    RITZ_CHECK(ritz_general_solve(&motion->to, true, &Phi));
+    RITZ_CHECK(ritz_spin_terms_add(terms, &Phi, &s->terms));
+    if (s->terms.S.val || s->terms.KG.val)
+        RITZ_CHECK(ritz_dense_new(motion->n, motion->n, &s->H));
+    add_scaled(1.0, &s->terms.S, &s->H);
+    add_scaled(1.0, &s->terms.KG, &s->H);
+    if (motion->D.val) {
+        RITZ_CHECK(ritz_dense_copy(&motion->D, &s->D));
+        ritz_dense_symmetrise(&s->D);
+    }
+    if (ritz_dense_max(&io->Ca) > 0.0)
+        RITZ_CHECK(ritz_dense_mul(&io->Ca, &Phi, &s->Ca));
+    return RITZ_OK;
 }
 
 static ritz_status start_spun(const ritz_spin_terms *terms,
@@ -262,24 +300,14 @@ static ritz_status start_spun(const ritz_spin_terms *terms,
     RITZ_CHECK_NEW(s, 1);
     march->own = s;
     march->free = release_spun;
-    s->terms = terms;
     s->rate = rate;
-    s->io = io;
     RITZ_CHECK_NEW(march->x, motion->n);
     RITZ_CHECK_NEW(march->v, motion->n);
-    RITZ_CHECK_NEW(s->g, motion->n);
+    RITZ_CHECK_NEW(s->Hx, motion->n);
+    RITZ_CHECK_NEW(s->Gx, motion->n);
     RITZ_CHECK_NEW(s->memory, 1);
     RITZ_CHECK(ritz_dense_new(motion->n, 1, &s->f));
-    if (terms->S.val || terms->KG.val)
-        RITZ_CHECK(ritz_dense_new(motion->n, motion->n, &s->H));
-    if (motion->D.val) {
-        RITZ_CHECK(ritz_dense_copy(&motion->D, &s->D));
-        ritz_dense_symmetrise(&s->D);
-    }
-    add_scaled(1.0, &terms->S, &s->H);
-    add_scaled(1.0, &terms->KG, &s->H);
-    if (ritz_dense_max(&io->Ca) > 0.0)
-        RITZ_CHECK(ritz_general_factor_new(&motion->M, &s->mass));
+    RITZ_CHECK(take_modes(terms, io, motion, s));
     march->motion = motion;
     march->memory = s->memory;
     march->num_memory = 1;
@@ -326,8 +354,8 @@ static ritz_status run_spun(ritz_model subject,
     RITZ_OWN(ritz_simulation) s = {0};
 
     RITZ_CHECK(check_request(subject, spin->terms, request));
-    RITZ_CHECK(ritz_motion_dense(subject, false, &motion));
-    RITZ_REFUSE_IF(motion.to.val, RITZ_ERR_ARGUMENT,
+    RITZ_CHECK(ritz_motion_dense(subject, true, &motion));
+    RITZ_REFUSE_IF(motion.n < motion.original, RITZ_ERR_ARGUMENT,
                    "a motion has no mass, as all need in a model that spins");
     motion.energies = true;
     RITZ_CHECK(

@@ -2,7 +2,8 @@
  * steps ORDER... - microseconds of processor time for a step of a reduced model
  * with so many modes, energies included, for each kind of run: integrators with
  * D that leaves modes uncoupled, with two dampers between all modes, and with a
- * full D; loops with a controller of two states; a state space. The last column
+ * full D; loops with a controller of two states; a state space; spin at a rate
+ * that is constant (a profile of one value) or changes. The last column
  * is the exponent of the order, fitted to the three largest. It only prints;
  * set OMP_NUM_THREADS=1 for one thread.
  */
@@ -32,6 +33,7 @@ typedef struct plant {
     ritz_io io;
     ritz_second_order matrices;
     ritz_state_space controller;
+    ritz_spin_terms spin;
     int64_t measured, driven;
     ritz_loop loop;
 } plant;
@@ -71,6 +73,33 @@ static void add_damping(int64_t n, coupling by, ritz_dense *D)
         }
 }
 
+/* A skew G, S = -1 and KG = 2 times the mass, and loads. */
+static ritz_status make_spin(int64_t n, ritz_spin_terms *spin)
+{
+    ritz_status status = RITZ_OK;
+    uint64_t seed = 5;
+
+    RITZ_TRY(ritz_dense_new(n, n, &spin->G));
+    RITZ_TRY(ritz_dense_new(n, n, &spin->S));
+    RITZ_TRY(ritz_dense_new(n, n, &spin->KG));
+    RITZ_TRY(ritz_dense_new(n, 2, &spin->load));
+    for (int64_t j = 0; j < n; j++) {
+        ritz_dense_col(&spin->S, j)[j] = -1.0;
+        ritz_dense_col(&spin->KG, j)[j] = 2.0;
+        for (int64_t i = 0; i < j; i++) {
+            const double g = ritz_general_noise(&seed) / (double)n;
+
+            ritz_dense_col(&spin->G, j)[i] = g;
+            ritz_dense_col(&spin->G, i)[j] = -g;
+        }
+        for (int k = 0; k < 2; k++)
+            ritz_dense_col(&spin->load, k)[j] = ritz_general_noise(&seed);
+    }
+    spin->inertia = 1.0;
+done:
+    return status;
+}
+
 static ritz_status make_plant(int64_t n, coupling by, plant *p)
 {
     ritz_status status = RITZ_OK;
@@ -92,6 +121,7 @@ static ritz_status make_plant(int64_t n, coupling by, plant *p)
         (ritz_second_order){.K = &p->K, .M = &p->M, .D = &p->D, .io = &p->io};
     p->loop = (ritz_loop){1, &p->measured, 1, &p->driven, false};
     RITZ_TRY(make_controller(p));
+    RITZ_TRY(make_spin(n, &p->spin));
 done:
     return status;
 }
@@ -103,6 +133,7 @@ static void free_plant(plant *p)
     ritz_dense_free(&p->D);
     ritz_io_free(&p->io);
     ritz_state_space_free(&p->controller);
+    ritz_spin_terms_free(&p->spin);
 }
 
 static double seconds(void)
@@ -120,7 +151,21 @@ typedef struct kind {
     coupling by;
     bool loop, exact, states;
     double sample;
+    int spin; /* 0: none, 1: at a constant rate, 2: at one that changes */
 } kind;
+
+/* A run whose rate of spin is 1 rad/s, or grows to that for ever. */
+static ritz_status spin_run(const plant *p, bool changes, ritz_model model,
+                            const ritz_simulation_request *request,
+                            ritz_simulation *out)
+{
+    double time[2] = {0.0, 2.0 * request->seconds}, value[2] = {1.0, 1.0};
+    const ritz_spin_rate rate = {RITZ_SPIN_PROFILE, 2, time, value};
+
+    if (changes)
+        value[0] = 0.0;
+    return ritz_simulate_spun(model, &p->spin, &rate, request, out);
+}
 
 /* Processor time of a whole run. */
 static ritz_status time_run(const plant *p, const kind *k, int64_t steps,
@@ -151,9 +196,10 @@ static ritz_status time_run(const plant *p, const kind *k, int64_t steps,
     request.seconds = request.step * (double)steps;
     request.every = steps;
     request.signal = &push;
-    RITZ_TRY(k->loop ? ritz_simulate_controlled(model, &request, &way,
-                                                &stability, &s)
-                     : ritz_simulate(model, &request, &s));
+    RITZ_TRY(k->loop       ? ritz_simulate_controlled(model, &request, &way,
+                                                      &stability, &s)
+             : k->spin > 0 ? spin_run(p, k->spin > 1, model, &request, &s)
+                           : ritz_simulate(model, &request, &s));
     *out = seconds() - began;
 done:
     ritz_simulation_free(&s);
@@ -251,6 +297,8 @@ static const kind kinds[] = {
     {"loop, exact, full D", &ritz_integrator_modal, .by = FULL, .loop = true,
      .exact = true},
     {"state space of 2 r states", &ritz_integrator_modal, .states = true},
+    {"spin, constant rate", &ritz_integrator_trapezoidal, .spin = 1},
+    {"spin, rate that changes", &ritz_integrator_trapezoidal, .spin = 2},
 };
 
 int main(int argc, char **argv)
