@@ -166,6 +166,9 @@ expect 1 'one exponential needs a continuous controller without a delay' \
     ritz-simulate --cost --loop exact --sample 0.05 $loop reduced.h5
 expect 2 '--switched is for a run that -o writes, not for --cost' \
     ritz-simulate --cost --switched modes --switch-interval 1 reduced.h5
+expect 0 'explicit steps are stable up to' ritz-simulate --cost --switched modes \
+    --switch-interval 0.1 --seconds 1 --step 0.01 --input torque=step \
+    reduced.h5 -o switched.h5
 expect 1 'is of reduced components and systems' ritz-simulate --cost stator.h5
 
 # --- options of another kind of run ------------------------------------------

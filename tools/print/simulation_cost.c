@@ -101,11 +101,9 @@ ritz_status simulation_say_costs(simulation_task *d, const double band_hz[2])
     const model *m = &d->m;
     ritz_cost cost = {0};
     ritz_simulation_request request = RITZ_SIMULATION_NONE;
-    const simulation_kind *kind = NULL;
 
     RITZ_REFUSE_IF(d->subject.kind != RITZ_MODEL_DENSE, RITZ_ERR_ARGUMENT,
                    "--cost is of reduced components and systems");
-    RITZ_CHECK(simulation_find_kind(given, &kind));
     RITZ_CHECK(simulation_record_cost(run, d->subject, band_hz, &cost));
     model_set_cost(run, &cost);
     say_cost_head(run, &cost);
@@ -125,7 +123,7 @@ ritz_status simulation_say_costs(simulation_task *d, const double band_hz[2])
         RITZ_CHECK_IN((*i)->name, say_integrator(run, d->subject, request));
     }
     sink_end(run);
-    if (kind)
+    if (simulation_is_controlled(given))
         RITZ_CHECK(simulation_say_loop_costs(d, cost.step_accurate));
     RITZ_CHECK(say_refactored(run, &cost));
     cli_record(run, m->kind == MODEL_REDUCED ? m->reduced.origin.method : "",
