@@ -198,6 +198,10 @@ ritz_status ritz_stage_spin_limits(const ritz_stage *stage,
                                    const double *setting, double error,
                                    ritz_spin_limits *out, double *without_pull);
 
+/** The first joint of a scene that closes a loop; -1: none does. Centrifugal
+ * forces of outboard bodies are those without the joints that close loops. */
+ritz_status ritz_stage_spin_loop(const ritz_stage *stage, int64_t *out);
+
 /** Mass of all bodies that joints hold outboard of body @p k of a scene that
  * spins. */
 ritz_status ritz_stage_spin_outboard(const ritz_stage *stage,

@@ -36,10 +36,33 @@ bool ritz_spin_names_load(const ritz_scene_component *item)
     return false;
 }
 
-/* Bodies that joints connect to @p start without passing through body k; k -1:
-   all of its tree. */
-static void reach_bodies(const ritz_scene *scene, int64_t start, int64_t k,
-                         bool *reached)
+/* Joints in their order, without those that close a loop: whether each is part
+   of the tree of joints. */
+static ritz_status find_tree(const ritz_scene *scene, int64_t bodies,
+                             bool **out)
+{
+    RITZ_OWN_ARRAY int64_t *label = NULL;
+
+    RITZ_CHECK_NEW(label, bodies);
+    RITZ_CHECK_NEW(*out, scene->num_joints);
+    for (int64_t k = 0; k < bodies; k++)
+        label[k] = k;
+    for (int64_t j = 0; j < scene->num_joints; j++) {
+        const int64_t a = label[scene->joint[j].between[0].component];
+        const int64_t b = label[scene->joint[j].between[1].component];
+
+        (*out)[j] = a != b;
+        for (int64_t k = 0; k < bodies; k++)
+            if (label[k] == b)
+                label[k] = a;
+    }
+    return RITZ_OK;
+}
+
+/* Bodies that joints of the tree connect to @p start without passing through
+   body k; k -1: all of its tree. */
+static void reach_bodies(const ritz_scene *scene, const bool *tree,
+                         int64_t start, int64_t k, bool *reached)
 {
     bool more = true;
 
@@ -50,7 +73,7 @@ static void reach_bodies(const ritz_scene *scene, int64_t start, int64_t k,
             const int64_t a = scene->joint[j].between[0].component;
             const int64_t b = scene->joint[j].between[1].component;
 
-            if (a == k || b == k || reached[a] == reached[b])
+            if (!tree[j] || a == k || b == k || reached[a] == reached[b])
                 continue;
             reached[a] = reached[b] = more = true;
         }
@@ -58,39 +81,37 @@ static void reach_bodies(const ritz_scene *scene, int64_t start, int64_t k,
 }
 
 /* Bodies between body k and the first of its tree, and all that these hold. */
-static ritz_status find_inboard(const ritz_stage *stage, int64_t k,
-                                bool *inboard)
+static ritz_status find_inboard(const ritz_stage *stage, const bool *tree,
+                                int64_t k, bool *inboard)
 {
-    RITZ_OWN_ARRAY bool *tree = NULL;
+    RITZ_OWN_ARRAY bool *all = NULL;
     int64_t first = 0;
 
-    RITZ_CHECK_NEW(tree, stage->count);
-    reach_bodies(stage->scene, k, -1, tree);
-    while (!tree[first])
+    RITZ_CHECK_NEW(all, stage->count);
+    reach_bodies(stage->scene, tree, k, -1, all);
+    while (!all[first])
         first++;
     if (first != k)
-        reach_bodies(stage->scene, first, k, inboard);
+        reach_bodies(stage->scene, tree, first, k, inboard);
     return RITZ_OK;
 }
 
-/* Add mass and pull of the bodies from @p start outwards that are not taken
-   yet, and mark them as taken. */
-static ritz_status add_outboard(const ritz_stage *stage,
+/* Add mass and pull of the bodies from @p start outwards. */
+static ritz_status add_outboard(const ritz_stage *stage, const bool *tree,
                                 const ritz_dense *places, int64_t start,
-                                int64_t k, bool *taken, ritz_spin_outlet *out)
+                                int64_t k, ritz_spin_outlet *out)
 {
     RITZ_OWN_ARRAY bool *reached = NULL;
 
     RITZ_CHECK_NEW(reached, stage->count);
-    reach_bodies(stage->scene, start, k, reached);
+    reach_bodies(stage->scene, tree, start, k, reached);
     out->unknown = -1;
     for (int64_t j = 0; j < stage->count; j++) {
         const ritz_inertia *of = &stage->body[j].inertia;
         double arm[3];
 
-        if (!reached[j] || taken[j])
+        if (!reached[j])
             continue;
-        taken[j] = true;
         if (!of->known)
             out->unknown = j;
         out->mass += of->mass;
@@ -122,9 +143,9 @@ static void find_origin(const ritz_stage *stage, const ritz_dense *places,
 }
 
 /* Add a joint whose side s is on body k. */
-static ritz_status add_joint(const ritz_stage *stage, const ritz_dense *places,
-                             const ritz_joint *joint, int s, bool *taken,
-                             ritz_spin_joints *joints)
+static ritz_status add_joint(const ritz_stage *stage, const bool *tree,
+                             const ritz_dense *places, const ritz_joint *joint,
+                             int s, ritz_spin_joints *joints)
 {
     const ritz_scene_place *end = joint->between;
     const int64_t k = end[s].component;
@@ -134,7 +155,7 @@ static ritz_status add_joint(const ritz_stage *stage, const ritz_dense *places,
     if (!outlet->port) /* assembly refuses such a joint */
         return RITZ_ERR_ARGUMENT;
     joints->count++;
-    return add_outboard(stage, places, end[1 - s].component, k, taken, outlet);
+    return add_outboard(stage, tree, places, end[1 - s].component, k, outlet);
 }
 
 ritz_status ritz_spin_joints_of(const ritz_stage *stage,
@@ -143,28 +164,41 @@ ritz_status ritz_spin_joints_of(const ritz_stage *stage,
 {
     const ritz_scene *scene = stage->scene;
     RITZ_OWN(ritz_spin_joints) joints = {0};
-    RITZ_OWN_ARRAY bool *inboard = NULL, *taken = NULL;
+    RITZ_OWN_ARRAY bool *inboard = NULL, *tree = NULL;
 
     RITZ_CHECK_NEW(inboard, stage->count);
-    RITZ_CHECK_NEW(taken, stage->count);
+    RITZ_CHECK(find_tree(scene, stage->count, &tree));
     RITZ_CHECK_NEW(joints.outlet, 2 * scene->num_joints);
-    RITZ_CHECK(find_inboard(stage, k, inboard));
+    RITZ_CHECK(find_inboard(stage, tree, k, inboard));
     for (int64_t j = 0; j < 2 * scene->num_joints; j++) {
         const ritz_joint *joint = &scene->joint[j / 2];
         const ritz_scene_place *near = &joint->between[j % 2];
         const int64_t far = joint->between[1 - j % 2].component;
 
-        if (near->component != k || (inboard[far] && joints.inlet))
+        if (!tree[j / 2] || near->component != k)
             continue;
         if (!inboard[far]) {
             RITZ_CHECK(
-                add_joint(stage, places, joint, (int)(j % 2), taken, &joints));
+                add_joint(stage, tree, places, joint, (int)(j % 2), &joints));
             continue;
         }
         joints.inlet = ritz_reduced_port(&stage->body[k], near->port);
         find_origin(stage, places, &joint->between[1 - j % 2], k, joints.from);
     }
     RITZ_MOVE(*out, joints);
+    return RITZ_OK;
+}
+
+ritz_status ritz_stage_spin_loop(const ritz_stage *stage, int64_t *out)
+{
+    const ritz_scene *scene = stage->scene;
+    RITZ_OWN_ARRAY bool *tree = NULL;
+
+    *out = -1;
+    RITZ_CHECK(find_tree(scene, stage->count, &tree));
+    for (int64_t j = 0; j < scene->num_joints && *out < 0; j++)
+        if (!tree[j])
+            *out = j;
     return RITZ_OK;
 }
 

@@ -147,6 +147,20 @@ static ritz_status say_limits(cli_run *run, const ritz_stage *stage,
     return RITZ_OK;
 }
 
+/* Warn of a joint that closes a loop: how the forces divide is not computed. */
+static ritz_status warn_of_loop(cli_run *run, const ritz_stage *stage)
+{
+    int64_t joint = -1;
+
+    RITZ_CHECK(ritz_stage_spin_loop(stage, &joint));
+    if (joint >= 0 && stage->scene->spin.model == RITZ_SPIN_CONSISTENT)
+        cli_warn(run,
+                 "joint '%s' closes a loop: bodies are stiffened by the "
+                 "centrifugal forces that they have without this joint",
+                 stage->scene->joint[joint].name);
+    return RITZ_OK;
+}
+
 ritz_status spin_say(cli_run *run, const ritz_stage *stage,
                      const ritz_configuration *at)
 {
@@ -162,6 +176,7 @@ ritz_status spin_say(cli_run *run, const ritz_stage *stage,
         cli_say(run, "  %-14s up to %.6g rad/s, %s", "spin", most,
                 ritz_spin_model_name(spin->model));
     warn_of_model(run, spin->model);
+    RITZ_CHECK(warn_of_loop(run, stage));
     RITZ_CHECK(warn_of_missing_stiffening(run, stage, at, &missing));
     RITZ_CHECK(spin_warn_of_loss(run, stage, NULL, "spin"));
     return say_limits(run, stage, at, missing);

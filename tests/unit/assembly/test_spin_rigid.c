@@ -83,7 +83,7 @@ static ritz_status swarm_stage(const char *text, const swarm *of,
 
 /* ---- three bodies in a row that move as one ------------------------------ */
 
-#define ROW                                                                    \
+#define ROW_AT(angle, more)                                                    \
     "scene: row\n"                                                             \
     "components:\n"                                                            \
     "  hub: {model: a.h5, basis: rigid}\n"                                     \
@@ -93,8 +93,13 @@ static ritz_status swarm_stage(const char *text, const swarm *of,
     "  - {name: p, between: [hub/b, arm/a], type: rigid,\n"                    \
     "     offset: [0.3, -0.2, 0.1]}\n"                                         \
     "  - {name: q, between: [arm/b, end/a], type: hinge, state: locked,\n"     \
-    "     axis: [0, 0, 1], angles_deg: [90]}\n"                                \
+    "     axis: [0, 0, 1], angles_deg: [" angle "]}\n" more                    \
     "spin: {axis: [2, -3, 6], through: [0.3, -0.2, 0.7], rate: 1}\n"
+
+/* The end stands 2.2 and 0.35 from the hub where q is not turned. */
+#define CLOSED                                                                 \
+    "  - {name: r, between: [hub/a, end/b], type: rigid,\n"                    \
+    "     offset: [2.2, 0, 0.35]}\n"
 
 static const swarm row[3] = {
     {{1.0, 2.0, 0.5}, {{0.2, 0.1, -0.1}, {1.0, 0.5, 0.25}, {-0.5, 0.3, 0.4}}},
@@ -196,22 +201,47 @@ static ritz_status row_terms(const ritz_stage *stage,
     return ritz_dense_congruence(&terms.S, &q, out);
 }
 
-static void rotation_has_the_potential_of_finite_angles(void **)
+/* The terms of a row, and the joint that closes a loop. */
+static ritz_status measure_row(const char *text, int64_t *loop, ritz_dense *out)
 {
     RITZ_OWN(ritz_scene) scene = {0};
     RITZ_OWN(ritz_stage) stage = {0};
     RITZ_OWN(ritz_configuration) rest = {0};
-    RITZ_OWN(ritz_dense) found = {0};
 
-    assert_ok(swarm_stage(ROW, row, 0.0, &scene, &stage));
+    RITZ_CHECK(swarm_stage(text, row, 0.0, &scene, &stage));
     scene.spin.given = false;
-    assert_ok(ritz_stage_assemble(&stage, scene.setting, &rest));
+    RITZ_CHECK(ritz_stage_assemble(&stage, scene.setting, &rest));
     scene.spin.given = true;
     assert_int_equal(rest.K.nrow, 6);
-    assert_ok(row_terms(&stage, &rest, &found));
+    RITZ_CHECK(ritz_stage_spin_loop(&stage, loop));
+    return row_terms(&stage, &rest, out);
+}
+
+static void rotation_has_the_potential_of_finite_angles(void **)
+{
+    RITZ_OWN(ritz_dense) found = {0};
+    int64_t loop = 0;
+
+    assert_ok(measure_row(ROW_AT("90", ""), &loop, &found));
+    assert_int_equal(loop, -1);
     for (int j = 0; j < 6; j++)
         for (int i = 0; i < 6; i++) /* h^2 / 12 V'''' */
             assert_near(ritz_dense_col(&found, j)[i], curvature(i, j), 5e-6);
+}
+
+/* All bodies move as one: one more joint changes nothing. */
+static void a_loop_stiffens_as_its_tree_of_joints(void **)
+{
+    RITZ_OWN(ritz_dense) chain = {0}, closed = {0};
+    int64_t loop = 0;
+
+    assert_ok(measure_row(ROW_AT("0", ""), &loop, &chain));
+    assert_ok(measure_row(ROW_AT("0", CLOSED), &loop, &closed));
+    assert_int_equal(loop, 2);
+    for (int j = 0; j < 6; j++)
+        for (int i = 0; i < 6; i++)
+            assert_near(ritz_dense_col(&closed, j)[i],
+                        ritz_dense_col(&chain, j)[i], 1e-12);
 }
 
 /* ---- an arm to a component that names its loads --------------------------- */
@@ -491,6 +521,7 @@ static void every_allocation_may_fail(void **)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(rotation_has_the_potential_of_finite_angles),
+    cmocka_unit_test(a_loop_stiffens_as_its_tree_of_joints),
     cmocka_unit_test(an_arm_to_a_component_with_loads_stiffens),
     cmocka_unit_test(a_hinged_blade_flaps_and_lags_by_closed_forms),
     cmocka_unit_test(a_mass_beyond_the_end_stiffens_a_blade),
