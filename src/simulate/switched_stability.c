@@ -204,7 +204,10 @@ static ritz_status check_definite(const ritz_library *library)
 
         RITZ_CHECK(take_span(library, matrix[k], &A));
         RITZ_CHECK(find_ends(&A, ends));
-        RITZ_REFUSE_IF(ends[0] < -RITZ_COMMUTES * fabs(ends[1]),
+        /* of a gyroscopic D the symmetric part is rounding of the whole */
+        RITZ_REFUSE_IF(ends[0] <
+                           -RITZ_COMMUTES * fabs(ends[1]) -
+                               RITZ_SUM_ROUNDING * ritz_dense_max(matrix[k]),
                        RITZ_ERR_ARGUMENT,
                        "%s has the negative value %.3g on the library: the "
                        "energy does not bound the motion",
